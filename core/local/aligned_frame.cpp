@@ -7,10 +7,6 @@
 namespace palpate {
 namespace {
 
-/// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
-/// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
-constexpr double kBacktrackSigmas = 6.0;
-
 /// backtrack <= kMaxBacktrack (of the half extent) if the noise is estimated from the residuals: a
 /// window that turns back on itself has large residuals too, and these must not excuse it.
 constexpr double kMaxBacktrack = 0.1;
@@ -97,8 +93,7 @@ AlignedFrameResult aligned_frame(std::span<const Vec2> samples) {
 
 LocalStatus check_backtrack(const AlignedFrame& frame, double sigma_given, double sigma_seen) {
   const auto explains = [&](double sigma) {
-    return frame.backtrack <=
-           kBacktrackSigmas * std::numbers::sqrt2 * sigma + kExtentRounding * frame.rounding;
+    return frame.backtrack <= most_backtrack(sigma) + kExtentRounding * frame.rounding;
   };
   const bool ok =
       explains(sigma_given) || (explains(sigma_seen) && frame.backtrack <= kMaxBacktrack);

@@ -2,6 +2,7 @@
 // direction of its tangents in the world.
 #pragma once
 
+#include <numbers>
 #include <span>
 
 #include "core/curves/pose2.h"
@@ -36,6 +37,11 @@ struct AlignedFrameResult {
   AlignedFrame frame;
 };
 AlignedFrameResult aligned_frame(std::span<const Vec2> samples);
+
+/// How far noise lets a sample run back behind the one before, in the unit of `sigma`: the
+/// difference of two abscissae has the noise sqrt(2) sigma, and six standard deviations reject one
+/// in 10^9 neighbours by chance.
+inline double most_backtrack(double sigma) { return 6.0 * std::numbers::sqrt2 * sigma; }
 
 /// Checks that the abscissae do not run back by more than noise explains. Ok if the given noise (0
 /// = unknown) explains it; also Ok if the noise seen in the residuals explains it and it is at most

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "core/local/residual_block.h"
-#include "core/numerics/median.h"
 #include "core/numerics/probability/normal_law.h"
+#include "core/numerics/quantile.h"
 
 namespace palpate {
 namespace {

@@ -77,10 +77,11 @@ LocalStatus fit_window(std::span<const Vec2> samples, const TwoRoundOptions& opt
   return LocalStatus::Ok;
 }
 
-/// Arc length of a window's parabola from its median to that of the next window, by Simpson's rule.
-double arc_to(const WindowFit& window, const Vec2& next_median) {
+/// Arc length of a window's parabola from its median to a place, by Simpson's rule; negative
+/// backwards.
+double arc_to(const WindowFit& window, const Vec2& place) {
   const double u0 = window.median_u;
-  const double u1 = window.frame.to_frame(next_median).x();
+  const double u1 = window.frame.to_frame(place).x();
   const auto speed = [&](double u) { return std::hypot(1.0, slope(window.c, u)); };
   return window.frame.half_extent_m * (u1 - u0) / 6.0 *
          (speed(u0) + 4.0 * speed(0.5 * (u0 + u1)) + speed(u1));
@@ -182,14 +183,8 @@ LocalResult two_round_estimate(std::span<const Vec2> all_samples, const TwoRound
   }
 
   e.window_arc_m = arc_unit * 2.0;
-  const auto to_edge = [&](const WindowFit& w, double u_edge) {
-    const auto speed = [&](double u) { return std::hypot(1.0, slope(w.c, u)); };
-    const double u0 = w.median_u;
-    return w.frame.half_extent_m * std::abs(u_edge - u0) / 6.0 *
-           (speed(u0) + 4.0 * speed(0.5 * (u0 + u_edge)) + speed(u_edge));
-  };
-  e.window_arc_m += to_edge(windows[0], windows[0].frame.to_frame(samples.front()).x());
-  e.window_arc_m += to_edge(windows[m - 1], windows[m - 1].frame.to_frame(samples.back()).x());
+  e.window_arc_m += std::abs(arc_to(windows[0], samples.front()));
+  e.window_arc_m += std::abs(arc_to(windows[m - 1], samples.back()));
   e.window_samples = static_cast<int>(total);
   e.sigma_m = sigma_m;
   result.status = LocalStatus::Ok;

@@ -48,7 +48,7 @@ struct MinimiseSummary {
 ///   static constexpr int kParameters;
 ///   double chi2_at(const Vector& x);   // evaluates a trial x
 ///   void accept();                     // makes the last trial x the current one
-///   void linearise(Matrix* information, Vector* gradient) const;  // J^T J and J^T r there
+///   void linearise(Matrix* information, Vector* gradient);  // J^T J and J^T r there
 /// and optionally
 ///   Vector bend(const Vector& step) const;  // J^T r'', r'' the second derivatives along `step`
 /// Without `bend` the steps are those of plain Levenberg-Marquardt. Some directions in the

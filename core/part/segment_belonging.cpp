@@ -39,9 +39,8 @@ std::optional<Run> fit_run(std::span<const StoredSample> samples, const PatchCon
   StoredPatch patch;
   patch.context = context;
   patch.samples.assign(samples.begin(), samples.end());
-  bool sigma_known = false;
   Run run;
-  run.data = make_fit_data(std::span(&patch, 1), sigma_m, &sigma_known);
+  run.data = make_fit_data(std::span(&patch, 1), sigma_m);
   run.single = fit_single_cubic(run.data);
   if (!std::isfinite(run.single.chi2)) {
     return std::nullopt;
@@ -260,9 +259,8 @@ SegmentJoint among_all(SegmentJoint joint, const std::vector<std::size_t>& teste
 
 /// The noise of samples that state none: from the residuals of a smooth model without a class. [m]
 double noise_of(const StoredPatch& patch, double sigma_m) {
-  bool sigma_known = false;
-  FitData data = make_fit_data(std::span(&patch, 1), sigma_m, &sigma_known);
-  if (sigma_known) {
+  FitData data = make_fit_data(std::span(&patch, 1), sigma_m);
+  if (data.noise_is_stated) {
     return sigma_m;
   }
   const SmoothModel smooth = fit_smooth_model(&data, false);

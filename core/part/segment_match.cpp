@@ -169,16 +169,15 @@ class Match {
 
   /// The data without spikes, their smooth model and their noise.
   void smooth() {
-    bool sigma_known = false;
-    data_ = make_fit_data(clean_.patches, options_.sigma_m, &sigma_known);
+    data_ = make_fit_data(clean_.patches, options_.sigma_m);
     if (data_.points.empty()) {
       return;
     }
     // A stated noise is what the verdict tests against. Were it thought too low where samples are
     // few, polynomials would be taken for their path that miss it by far.
-    smooth_ = fit_smooth_model(&data_, sigma_known, StatedNoise::Holds);
-    noise_known_ = sigma_known || smooth_.dof() >= kFewestNoiseDegrees;
-    if (!sigma_known) {
+    smooth_ = fit_smooth_model(&data_, data_.noise_is_stated, StatedNoise::Holds);
+    noise_known_ = data_.noise_is_stated || smooth_.dof() >= kFewestNoiseDegrees;
+    if (!data_.noise_is_stated) {
       const double sigma = std::max(smooth_.noise_ratio(), rounding_level(data_));
       scale_noise(sigma, &data_, &smooth_);
     }

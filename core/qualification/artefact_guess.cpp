@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/given/given_class.h"
 
 namespace palpate {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/numerics/median.h"
 #include "core/numerics/probability/log_gamma.h"
+#include "core/numerics/quantile.h"
 #include "core/qualification/normal_offset.h"
 
 namespace palpate {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/numerics/median.h"
 #include "core/numerics/probability/normal_law.h"
+#include "core/numerics/quantile.h"
 #include "core/qualification/artefact_guess.h"
 #include "core/qualification/estimated_tip.h"
 #include "core/qualification/offset_evidence.h"

@@ -1,13 +1,18 @@
 #include "core/recognition/estimate_stream.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/local/tip_radius.h"
+#include "core/recognition/samples/sample_faults.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
-void EstimateStream::add(const PatchContext& context, std::span<const ContactSample> samples) {
+
+void EstimateStream::add(const PatchContext& context, std::span<const ContactSample> samples,
+                         std::span<const SampleDetail> details) {
+  if (fault_of_all(context, samples, details) != SampleFault::None) {
+    return;
+  }
   auto probe = std::find_if(probes_.begin(), probes_.end(), [&](const Probe& known) {
     return known.context.probe == context.probe;
   });
@@ -18,10 +23,10 @@ void EstimateStream::add(const PatchContext& context, std::span<const ContactSam
     probe->window.reset();
   }
   probe->context = context;
-  for (const ContactSample& sample : samples) {
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const ContactSample& sample = samples[i];
     const bool repeated = probe->window.count() > 0 && sample.position_m == probe->newest_m;
-    if (!sample.position_m.allFinite() || !std::isfinite(sample.sigma_m) || sample.sigma_m < 0.0 ||
-        repeated) {
+    if (repeated || fault_of(i, samples, details) != SampleFault::None) {
       continue;
     }
     probe->newest_m = sample.position_m;

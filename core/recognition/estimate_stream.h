@@ -10,6 +10,7 @@
 #include "core/local/stream/sliding_window.h"
 #include "core/recognition/localized_contact.h"
 #include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_detail.h"
 
 namespace palpate {
 
@@ -20,9 +21,10 @@ class EstimateStream {
  public:
   explicit EstimateStream(const SlidingOptions& options) : options_(options) {}
 
-  /// Leaves out samples that are not finite, have negative noise or repeat the place of the one
-  /// before, as SampleMemory does.
-  void add(const PatchContext& context, std::span<const ContactSample> samples);
+  /// Leaves out samples that cannot be used (sample_faults.h), and those that repeat the place of
+  /// the one before, which say nothing new of the path.
+  void add(const PatchContext& context, std::span<const ContactSample> samples,
+           std::span<const SampleDetail> details);
 
   /// Side of travel on which the tip's centre lies: +1 left, -1 right, 0 not known.
   using SideOf = std::function<int(std::uint32_t probe, std::uint32_t patch)>;

@@ -6,6 +6,13 @@ ShapePoseCovariance noise_covariance(const Recognition& recognition) {
   return recognition.covariance_inflation * recognition.white_covariance;
 }
 
+void add_doubt(Doubt doubt, Recognition* answer) {
+  if (answer->status == RecognitionStatus::Recognized) {
+    answer->status = RecognitionStatus::Ambiguous;
+    answer->doubt = doubt;
+  }
+}
+
 std::string_view name_of(Doubt doubt) {
   switch (doubt) {
     case Doubt::None:

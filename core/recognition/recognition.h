@@ -99,6 +99,9 @@ struct Recognition {
   WorkBudget work;  ///< that the answer took, and whether there was more to do
 };
 
+/// What speaks against an answer that nothing has spoken against yet: RECOGNIZED becomes AMBIGUOUS.
+void add_doubt(Doubt doubt, Recognition* answer);
+
 /// Covariance of the most probable hypothesis if the probe errs by noise alone. Empty if there is
 /// none.
 ShapePoseCovariance noise_covariance(const Recognition& recognition);

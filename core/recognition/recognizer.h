@@ -44,8 +44,9 @@ struct RecognizerOptions {
   /// that visibly deviates from its class is of no class. Not set: true unless the noise of every
   /// sample is stated: whoever knows that has measured the probe. MaximumLikelihood only.
   std::optional<bool> unqualified_probe;
-  /// True if a probe file says by how much the probe deviates, and who has it adds that to the
-  /// answer. What deviates smoothly from a class is then the probe's as well as the part's.
+  /// True if a probe file says by how much the probe deviates: `recognise_probed`
+  /// (qualification/probe_correction.h) sets it, and adds the probe's covariance to the answer.
+  /// What deviates smoothly from a class may then be the probe's as well as the part's.
   bool has_probe_file = false;
   /// Where tips touch that have no stated side. Unknown: the answer is that from outside where the
   /// samples allow it; it is RECOGNIZED only if they rule out the others. A line has no outside.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/recognition/contacts.h"
@@ -70,6 +71,16 @@ TreeResult reported_tree_path(const Weighing& w, std::span<const LocalizedContac
     point = chosen[point];
   }
   return tree;
+}
+
+Recognition with_tree_path(Recognition answer, const Weighing& w,
+                           const RecognitionTreeOptions& options) {
+  add_path(reported_tree_path(w, answer.contacts, options), &answer);
+  const double p_value = answer.tree_p_values[answer.shape.curve_class];
+  if (p_value < options.significance) {
+    add_doubt(Doubt::TreeRejects, &answer);
+  }
+  return answer;
 }
 
 }  // namespace palpate

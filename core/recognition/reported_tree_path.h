@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/recognition/localized_contact.h"
+#include "core/recognition/recognition.h"
 #include "core/recognition/tree/recognition_tree.h"
 #include "core/recognition/weigh/weigh.h"
 
@@ -14,5 +15,10 @@ namespace palpate {
 /// belong to the contacts `pooled`.
 TreeResult reported_tree_path(const Weighing& w, std::span<const LocalizedContact> contacts,
                               const RecognitionTreeOptions& options);
+
+/// The answer of a weighing with that path on its contacts, and the doubt if the tree's tests
+/// reject the class.
+Recognition with_tree_path(Recognition answer, const Weighing& w,
+                           const RecognitionTreeOptions& options);
 
 }  // namespace palpate

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/local/noise.h"
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/dwell_means.h"
 #include "core/recognition/samples/stroke_order.h"
 #include "node/check/normal_check.h"

@@ -7,7 +7,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/spikes.h"
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 
 namespace palpate {
 namespace {

@@ -21,11 +21,9 @@ struct AnsweredScene {
 /// With the scene's noise stated; weighed twice, the second time starting from the first weighing.
 inline AnsweredScene answered(const Scene& scene) {
   const std::vector<StoredPatch> patches = stored_patches(scene, scene.sigma_m);
-  bool sigma_known = false;
-  const FitData data = make_fit_data(patches, 0.0, &sigma_known);
-  const std::vector<SidedStart> starts =
-      weigh(data, sigma_known, patches, test::unbounded_work()).starts;
-  AnsweredScene answered{weigh(data, sigma_known, patches, test::unbounded_work(), {}, starts), {}};
+  const FitData data = make_fit_data(patches, 0.0);
+  const std::vector<SidedStart> starts = weigh(data, patches, test::unbounded_work()).starts;
+  AnsweredScene answered{weigh(data, patches, test::unbounded_work(), {}, starts), {}};
   answered.contacts = PatchContacts().of(patches, answered.weighing.sides, {}, {});
   return answered;
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/curves/algebraic/canonical_conic.h"
+#include "tests/support/conic_equation.h"
 
 namespace palpate::test {
 

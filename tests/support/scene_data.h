@@ -63,8 +63,7 @@ inline std::vector<StoredPatch> stored_patches(const Scene& scene, double sigma_
 }
 
 inline FitData fit_data(const Scene& scene, double sigma_m) {
-  bool sigma_known = false;
-  return make_fit_data(stored_patches(scene, sigma_m), 0.0, &sigma_known);
+  return make_fit_data(stored_patches(scene, sigma_m), 0.0);
 }
 
 inline const Hypothesis* hypothesis_of(const Recognition& answer, CurveClass curve_class) {

@@ -59,9 +59,8 @@ Prepared prepare(const SearchCase& search_case) {
     memory.add({0, static_cast<std::uint32_t>(p), search_case.tip_radius_m, sides[p]}, samples);
   }
   Prepared prepared;
-  bool sigma_known = true;
-  prepared.data = make_fit_data(memory.patches(), 0.0, &sigma_known);
-  prepared.smooth = fit_smooth_model(&prepared.data, sigma_known);
+  prepared.data = make_fit_data(memory.patches(), 0.0);
+  prepared.smooth = fit_smooth_model(&prepared.data, prepared.data.noise_is_stated);
   WorkBudget unbounded;
   const auto possible = possible_sides(memory.patches(), prepared.smooth.reduced,
                                        turns_of(prepared.smooth.reduced), {}, unbounded);

@@ -34,8 +34,7 @@ FitData data_of(const LoneTouches& touches, std::size_t every, std::size_t first
     context.patch = static_cast<std::uint32_t>(i);
     memory.add(context, {&sample, 1});
   }
-  bool sigma_known = true;
-  return make_fit_data(memory.patches(), 0.0, &sigma_known);
+  return make_fit_data(memory.patches(), 0.0);
 }
 
 /// The curve with these parameters; its foot points are those of the touches.
@@ -139,7 +138,7 @@ void take_limits(ClassFits* fits) {
 TouchReference reference_of(const LoneTouches& touches) {
   // Relative to the shortest tree: a curve above it goes forth and back.
   constexpr double kNeedle = 1.5;
-  Arcs arcs = smooth_arcs(data_of(touches, 1, 0), true);
+  Arcs arcs = smooth_arcs(data_of(touches, 1, 0));
   const FitData& data = arcs.smooth.reduced;  // every touch stands for itself
   Optima optima;
   const ClassFits searched = fit_classes(data, test::unbounded_work());

@@ -54,9 +54,4 @@ ConicCanonicalisation canonicalise(const ConicCoefficients& q);
 /// five classes above.
 std::optional<CanonicalConic> canonicalise_as(CurveClass curve_class, const ConicCoefficients& q);
 
-/// The equation of the curve at that pose, with unit norm. For a hyperbola both branches satisfy
-/// it. Precondition: one of the five classes above, `values` in the order of parameter_letters.
-ConicCoefficients conic_of(CurveClass curve_class, const Eigen::Vector3d& values,
-                           const Pose2& world_T_curve);
-
 }  // namespace palpate

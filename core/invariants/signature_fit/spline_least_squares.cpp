@@ -10,7 +10,7 @@
 #include "core/curves/pose2.h"
 #include "core/invariants/cubic_spline_equations.h"
 #include "core/invariants/spline_pair.h"
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 
 namespace palpate {
 namespace {

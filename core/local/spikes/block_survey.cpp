@@ -2,9 +2,11 @@
 
 #include <cmath>
 
+#include "core/local/aligned_frame.h"
 #include "core/local/noise.h"
 #include "core/local/spikes/least_median_parabola.h"
 #include "core/numerics/probability/normal_law.h"
+#include "core/numerics/quantile.h"
 
 namespace palpate {
 namespace {
@@ -29,10 +31,6 @@ constexpr double kFormResolution = 1e-5;
 /// extent.
 constexpr double kCuspFactor = 2e-3;
 
-/// backtrack <= kBacktrackSigmas * sqrt(2) * sigma: the difference of two abscissae has the noise
-/// sqrt(2) sigma. Six standard deviations reject one in 10^9 neighbours by chance.
-constexpr double kBacktrackSigmas = 6.0;
-
 /// What form leaves of a quartic, counted as noise. [m]
 double noise_floor(const ResidualBlock& block, bool at_cusp) {
   const double slope = std::min(block.steepest(), 1.0);
@@ -41,12 +39,13 @@ double noise_floor(const ResidualBlock& block, bool at_cusp) {
          block.extent_m();
 }
 
-double quantile(std::vector<double>& values, double fraction) {
-  const auto place =
-      values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size()));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+/// Third difference of four samples: what a parabola at even steps leaves, times the norm. [m]
+Vec2 third_difference(std::span<const Vec2, 4> samples) {
+  return samples[3] - samples[0] - 3.0 * (samples[2] - samples[1]);
 }
+
+/// Of its coefficients: noise of one coordinate comes so many times larger.
+const double kNormOfThird = std::sqrt(1.0 + 9.0 + 9.0 + 1.0);
 
 /// Noise from the third differences across travel. One sample spoils four of them: with a third of
 /// the samples spikes, a fifth of the differences, (2/3)^4, are clean, and their 20 % quantile is
@@ -54,15 +53,14 @@ double quantile(std::vector<double>& values, double fraction) {
 double low_noise_of(std::span<const Vec2> samples, std::vector<double>& sizes) {
   constexpr double kQuantile = 0.2;
   constexpr double kQuantileOfNormal = 0.2533471031357997;  // of |normal variable|
-  constexpr double kNorm = 4.47213595499958;  // norm of the coefficients: sqrt(1 + 9 + 9 + 1)
   sizes.clear();
   for (std::size_t i = 0; i + 3 < samples.size(); ++i) {
     const Vec2 chord = samples[i + 3] - samples[i];
-    const Vec2 difference = chord - 3.0 * (samples[i + 2] - samples[i + 1]);
+    const Vec2 difference = third_difference(samples.subspan(i).first<4>());
     const double length = chord.norm();
     sizes.push_back(length > 0.0 ? std::abs(cross(chord, difference)) / length : 0.0);
   }
-  return quantile(sizes, kQuantile) / (kQuantileOfNormal * kNorm);
+  return quantile_of(sizes, kQuantile) / (kQuantileOfNormal * kNormOfThird);
 }
 
 /// The length of blocks for that noise, from the lower quartile of their chords, because spikes at
@@ -75,7 +73,7 @@ std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
     for (std::size_t i = 0; i + length <= samples.size(); i += length / 2) {
       chords.push_back((samples[i + length - 1] - samples[i]).norm());
     }
-    if (quantile(chords, 0.25) > ResidualBlock::kMinExtentSigmas * sigma_m) {
+    if (quantile_of(chords, 0.25) > ResidualBlock::kMinExtentSigmas * sigma_m) {
       break;
     }
   }
@@ -98,8 +96,7 @@ struct Blocks {
 /// Whether a parabola through three of the four samples at an end of a stroke misses the fourth by
 /// more than noise, of which none exceeds `limit_m`.
 bool leaves_at_end(std::span<const Vec2, 4> end, double limit_m) {
-  constexpr double kNorm = 4.47213595499958;  // of the coefficients: sqrt(1 + 9 + 9 + 1)
-  return (end[3] - 3.0 * (end[2] - end[1]) - end[0]).norm() > kNorm * limit_m;
+  return third_difference(end).norm() > kNormOfThird * limit_m;
 }
 
 Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
@@ -143,7 +140,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
     of_blocks.push_back(of_block);
   });
   if (result.status == LocalStatus::Ok) {
-    result.extent_m = quantile(extents, 0.5);
+    result.extent_m = median_of(extents);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
     for (const OfBlock& of_block : of_blocks) {
       const double unit_m = std::max(result.sigma_m, of_block.floor_m);
@@ -204,7 +201,7 @@ double parabola_scale_m(std::span<const Vec2> samples, std::size_t length,
                      sizes.push_back(parabola.scale_m());
                    }
                  });
-  return sizes.empty() ? 0.0 : quantile(sizes, 0.5);
+  return sizes.empty() ? 0.0 : median_of(sizes);
 }
 
 /// Checks whether spikes have enlarged the noise. Then half of each block lies much nearer to a
@@ -256,7 +253,7 @@ double residual_limit(const ResidualBlock& block, double sigma_m, double thresho
 }
 
 bool turns_back(const ResidualBlock& block, double sigma_m) {
-  return block.backtrack_m() > kBacktrackSigmas * std::sqrt(2.0) * sigma_m;
+  return block.backtrack_m() > most_backtrack(sigma_m);
 }
 
 BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
@@ -292,7 +289,7 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::ui
     return survey;
   }
   // Where noise scatters samples along the axis too, their order on it says nothing.
-  const double backtrack_m = kBacktrackSigmas * std::sqrt(2.0) * survey.sigma_m;
+  const double backtrack_m = most_backtrack(survey.sigma_m);
   const bool is_out_of_order = blocks.end_gap > kLonelyGap || blocks.backtrack_m > backtrack_m ||
                                leaves_path(samples, on_path, backtrack_m);
   const double limit_m = threshold * survey.sigma_m;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/numerics/quantile.h"
+
 namespace palpate {
 namespace {
 
@@ -19,10 +21,7 @@ std::vector<double> steps_of(std::span<const Vec2> samples) {
 double long_step_m(std::vector<double> steps) {
   constexpr double kShort = 0.2;  // of all steps; with a third of spikes, (2/3)^2 have none
   constexpr double kJump = 4.0;   // short steps
-  const auto place =
-      steps.begin() + static_cast<std::ptrdiff_t>(kShort * static_cast<double>(steps.size()));
-  std::nth_element(steps.begin(), place, steps.end());
-  return kJump * *place;
+  return kJump * quantile_of(steps, kShort);
 }
 
 }  // namespace

@@ -280,10 +280,10 @@ class Search {
 }  // namespace
 
 SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          const BlockSurvey& survey, double sigma_m, double threshold,
+                          const BlockSurvey& survey, bool noise_is_stated, double threshold,
                           const CuspEnds& cusps, WorkBudget& work) {
   Search search(samples, on_path, survey, threshold, cusps, work);
-  if (!(sigma_m > 0.0)) {
+  if (!noise_is_stated) {
     search.refine_noise();
   }
   return {search.judge(), search.sigma_m()};

@@ -157,8 +157,8 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     }
     BlockSurvey longer = survey;
     longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found = search_spikes(kept.samples, on_path, longer, sigma_m, result.threshold,
-                                      options.cusps, work);
+    SpikeSearch found = search_spikes(kept.samples, on_path, longer, sigma_m > 0.0,
+                                      result.threshold, options.cusps, work);
     if (doublings > 0) {
       spare_runs(static_cast<std::ptrdiff_t>(survey.length / 2), &found.is_spike);
     }

@@ -18,8 +18,8 @@ struct SpikeOptions {
   /// probability divided by the number of samples: 3.9 for 111 samples.
   double false_alarms_per_patch = 0.01;
   CuspEnds cusps = {};
-  /// Steps 2 and 3 are counted in it, and are made as far as it goes: what a block has not been
-  /// asked about is no spike. nullptr: as far as they lead.
+  /// All steps are counted in it. Steps 2 and 3 are made as far as it goes: what a block has not
+  /// been asked about is no spike. nullptr: as far as they lead.
   WorkBudget* work = nullptr;
 };
 
@@ -38,11 +38,11 @@ struct Spikes {
 ///    half. If nothing exceeds the threshold, no sample lies behind an earlier one and the noise is
 ///    not suspicious, there are no spikes (block_survey.h). O(samples); a clean patch costs no more
 ///    than this.
-/// 2. In blocks that overlap by three quarters: a start that cannot be bent by spikes in up to half
-///    of the block (least_median_parabola.h).
-/// 3. From this start: the inliers of the quartic, and the test (spike_search.h) of the deletion
-///    residual against z, for samples inside and outside the fit. Steps 1 to 3 are repeated without
-///    the spikes found.
+/// 2. In blocks that overlap by three quarters: the quartic through the samples on the path; if
+///    more than an eighth of the block would leave it, one through the half that lies nearest to a
+///    parabola, which spikes in up to half of the block cannot bend (least_median_parabola.h).
+/// 3. The test of the deletion residual against z (spike_search.h), for samples inside and outside
+///    that fit. Steps 1 to 3 are repeated without the spikes found.
 ///
 /// A corner, a step or a bend is form and not a spike: a block does not judge samples beyond its
 /// own inliers, and a block that turns by more than 45 degrees judges nothing. Samples that are not

@@ -34,43 +34,62 @@ std::vector<bool> samples_at(std::span<const Vec2> places_m, std::span<const Sto
 
 }  // namespace
 
-Weighed CountedSamples::without_outliers(const FitData& data, bool sigma_known,
-                                         std::span<const StoredPatch> patches,
-                                         std::span<const SidedStart> starts, StartsOf of,
-                                         std::span<const Vec2> off_m, WorkBudget& work) const {
+Weighed CountedSamples::searched(const Touched& touched, WorkBudget& work) const {
+  return without_outliers(touched, touched.sought, StartsOf::Search, {}, work);
+}
+
+Weighed CountedSamples::without_outliers(const Touched& touched, std::span<const SidedStart> starts,
+                                         StartsOf of, std::span<const Vec2> off_m,
+                                         WorkBudget& work) const {
+  const FitData& data = touched.data;
+  const std::span<const StoredPatch> patches = touched.patches;
   Weighed weighed;
   weighed.w.starts.assign(starts.begin(), starts.end());
   if (std::vector<bool> off = samples_at(off_m, patches); !off.empty()) {
-    weigh_again(std::move(off), data, sigma_known, patches, StartsOf::LastWeighing, &weighed, work);
+    weigh_again(std::move(off), touched, StartsOf::LastWeighing, &weighed, work);
   }
   const auto curve = weighed.outliers.empty() ? std::nullopt : curve_of(weighed.w);
   if (!curve || !misses_all(*curve, flagged_samples(patches, weighed.outliers))) {
     weighed = {};
-    weighed.w =
-        weigh_in_full(data, sigma_known, patches, work, weigh_options(data, sigma_known), starts);
+    weighed.w = weigh_in_full(data, patches, work, weigh_options(data), starts);
   }
   const Weighing& w = weighed.w;
   const auto look_again = [&] {
     std::vector<bool> aside =
         weighed.outliers.empty() ? std::vector<bool>(data.points.size()) : weighed.outliers;
-    FarSamples far =
-        far_samples(w, data, std::move(aside), sigma_known, options_.false_outlier_probability);
+    FarSamples far = far_samples(w, data, std::move(aside), options_.false_outlier_probability);
     weighed.leaves_class = far.are_form;
     return std::move(far.aside);
   };
   std::vector<bool> aside = look_again();
-  if (aside.empty() && sigma_known && w.best == CurveClass::Unclassified && work.allows()) {
+  if (aside.empty() && data.noise_is_stated && w.best == CurveClass::Unclassified &&
+      work.allows()) {
     if (const auto kept = without_gross_touches(w, data, work)) {
-      weigh_again(left_out(data, *kept), data, sigma_known, patches, of, &weighed, work);
+      weigh_again(left_out(data, *kept), touched, of, &weighed, work);
     }
     return weighed;
   }
   // Those that are farthest keep the curve off the others beside them, which are seen next.
   while (!aside.empty() && work.allows()) {
-    weigh_again(std::move(aside), data, sigma_known, patches,
-                weighed.outliers.empty() ? of : StartsOf::LastWeighing, &weighed, work);
+    weigh_again(std::move(aside), touched, weighed.outliers.empty() ? of : StartsOf::LastWeighing,
+                &weighed, work);
     const bool done = work.was_cut() || w.best == CurveClass::Unclassified;
     aside = done ? std::vector<bool>{} : look_again();
+  }
+  return weighed;
+}
+
+Weighed CountedSamples::settled(Weighed weighed, std::span<const StoredPatch> patches,
+                                WorkBudget& work) const {
+  const bool is_class = weighed.w.best != CurveClass::Unclassified;
+  if (is_class && samples_.moved_count() > count_samples(patches) && !work.was_cut()) {
+    weighed = with_ends(std::move(weighed), work);
+    if (!weighed.patches) {
+      weighed = with_explained(std::move(weighed), work);
+    }
+  }
+  if (!work.was_cut()) {
+    weighed = without_spikes_in_bends(std::move(weighed), patches, work);
   }
   return weighed;
 }
@@ -92,18 +111,16 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
     const auto explained = is_none ? std::nullopt : with_spikes_on(curve, others, work);
     return !explained || count_samples(*explained) != counted;
   };
-  const std::span<const StoredPatch> weighed_patches = weighed.patches ? *weighed.patches : patches;
+  const std::span<const StoredPatch> weighed_patches = patches_of(weighed, patches);
   auto fewer = without_unfollowed(weighed.w, weighed.outliers, weighed_patches, tells_spikes, work);
   if (!fewer) {
     return weighed;
   }
-  bool sigma_known = false;
-  const FitData data = make_fit_data(*fewer, options_.sigma_m, &sigma_known);
-  if (!have_places(data, kFewestPlaces)) {
+  const Touched fewer_touched{make_fit_data(*fewer, options_.sigma_m), *fewer};
+  if (!have_places(fewer_touched.data, kFewestPlaces)) {
     return weighed;
   }
-  const Weighed without =
-      without_outliers(data, sigma_known, *fewer, {}, StartsOf::Search, {}, work);
+  const Weighed without = searched(fewer_touched, work);
   const auto curve = curve_of(without.w);
   if (!curve || !work.allows()) {
     return weighed;
@@ -121,10 +138,11 @@ Weighed CountedSamples::without_spikes_in_bends(Weighed weighed,
                  : more_probable(std::move(weighed), *std::move(again), patches, samples_.moved());
 }
 
-Weighed CountedSamples::with_ends(Weighed weighed, bool sigma_known, WorkBudget& work) const {
-  auto more = sigma_known && weighed.w.best != CurveClass::Unclassified && work.allows()
-                  ? with_runs_at_ends(samples_.moved(), samples_.clean())
-                  : std::nullopt;
+Weighed CountedSamples::with_ends(Weighed weighed, WorkBudget& work) const {
+  auto more =
+      weighed.w.data.noise_is_stated && weighed.w.best != CurveClass::Unclassified && work.allows()
+          ? with_runs_at_ends(samples_.moved(), samples_.clean())
+          : std::nullopt;
   if (!more) {
     return weighed;
   }
@@ -147,9 +165,7 @@ Weighed CountedSamples::with_explained(Weighed weighed, WorkBudget& work) const 
   return *std::move(again);
 }
 
-Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
-                                 std::span<const StoredPatch> patches,
-                                 std::span<const SidedStart> starts,
+Weighed CountedSamples::followed(const Touched& touched, std::span<const SidedStart> starts,
                                  const std::optional<ExplainingCurve>& explains,
                                  std::span<const Vec2> off_m, WorkBudget& work) const {
   auto more = explains ? with_spikes_on(*explains, samples_.clean(), work) : std::nullopt;
@@ -163,7 +179,7 @@ Weighed CountedSamples::followed(const FitData& data, bool sigma_known,
       return *std::move(again);
     }
   }
-  return without_outliers(data, sigma_known, patches, starts, StartsOf::LastWeighing, off_m, work);
+  return without_outliers(touched, starts, StartsOf::LastWeighing, off_m, work);
 }
 
 /// Whether the curve misses each by more than noise lets it.
@@ -192,15 +208,14 @@ std::optional<std::vector<StoredPatch>> CountedSamples::with_spikes_on(
 }
 
 /// Weighs without the samples that have a flag.
-void CountedSamples::weigh_again(std::vector<bool> aside, const FitData& data, bool sigma_known,
-                                 std::span<const StoredPatch> patches, StartsOf of,
+void CountedSamples::weigh_again(std::vector<bool> aside, const Touched& touched, StartsOf of,
                                  Weighed* weighed, WorkBudget& work) const {
-  const FitData kept = without_points(data, aside);
+  const FitData kept = without_points(touched.data, aside);
   const std::vector<SidedStart> starts =
-      of == StartsOf::Search ? std::vector<SidedStart>{} : std::move(weighed->w.starts);
-  WeighOptions options = weigh_options(kept, sigma_known);
-  options.log_odds_against_gross = log_odds_against_gross(data, kept);
-  Weighing again = weigh_in_full(kept, sigma_known, patches, work, options, starts);
+      of == StartsOf::Search ? std::vector<SidedStart>{} : weighed->w.starts;
+  WeighOptions options = weigh_options(kept);
+  options.log_odds_against_gross = log_odds_against_gross(touched.data, kept);
+  Weighing again = weigh_in_full(kept, touched.patches, work, options, starts);
   if (!work.was_cut()) {  // else the one before says more
     weighed->w = std::move(again);
     weighed->outliers = std::move(aside);
@@ -215,10 +230,8 @@ std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
   if (auto joined = joined_touches(more, options_.sigma_m, options_.weigh.classes, work)) {
     more = std::move(joined->patches);
   }
-  bool sigma_known = false;
-  const FitData data = make_fit_data(more, options_.sigma_m, &sigma_known);
-  Weighed again =
-      without_outliers(data, sigma_known, more, starts, StartsOf::LastWeighing, off_m, work);
+  Weighed again = without_outliers({make_fit_data(more, options_.sigma_m), more}, starts,
+                                   StartsOf::LastWeighing, off_m, work);
   if (work.was_cut() || again.w.best != best || !again.w.canonical[best]) {
     return std::nullopt;
   }
@@ -226,9 +239,9 @@ std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
   return again;
 }
 
-WeighOptions CountedSamples::weigh_options(const FitData& data, bool sigma_known) const {
+WeighOptions CountedSamples::weigh_options(const FitData& data) const {
   WeighOptions options = options_.weigh;
-  options.unqualified_probe = options_.unqualified_probe.value_or(!sigma_known);
+  options.unqualified_probe = options_.unqualified_probe.value_or(!data.noise_is_stated);
   options.near_parts = !options.unqualified_probe && !options_.has_probe_file &&
                        !may_have_missed_spikes(samples_.moved_count(), data.points.size());
   return options;

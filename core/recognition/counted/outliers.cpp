@@ -9,6 +9,7 @@
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/probability/normal_law.h"
 #include "core/numerics/probability/student_quantile.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 
 namespace palpate {
@@ -34,7 +35,7 @@ struct Misses {
   double limit = 0.0;
 };
 
-Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_known,
+Misses misses_of(const CanonicalFit& fit, const Weighing& weighing,
                  double false_outlier_probability) {
   const std::size_t n = fit.points.size();
   Misses misses{std::vector<double>(n), 0.0};
@@ -44,23 +45,23 @@ Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_k
   // Robust scale of the residuals: their noise may be unknown, and spikes must not widen it. What
   // is stated is the least, else rounding and the readings' step: the smooth model may have taken a
   // feature of the part, which few samples show, for noise.
-  std::vector<double> sorted = misses.magnitude;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(n / 2),
-                   sorted.end());
+  std::vector<double> sizes = misses.magnitude;
   // The fit absorbs part of the noise. And a median knows a scale only as well as a root mean
   // square of 0.37 times the degrees of freedom (its efficiency).
   constexpr double kEfficiencyOfMedian = 0.37;
   const double dof = static_cast<double>(n) - degrees_of_freedom(fit.shape.curve_class);
   const double taken = std::sqrt(static_cast<double>(n) / std::max(dof, 1.0));
   const FitData& data = weighing.data;
-  const double least =
-      sigma_known ? 1.0 : std::max(rounding_level(data), data.reading_noise) / weighing.sigma;
-  const double scale = std::max(least, taken * sorted[n / 2] / kMedianOfNormal);
+  const double least = data.noise_is_stated
+                           ? 1.0
+                           : std::max(rounding_level(data), data.reading_noise) / weighing.sigma;
+  const double scale = std::max(least, taken * median_of(sizes) / kMedianOfNormal);
   const std::size_t residuals = residual_count(data);
   const double z =
       two_sided_normal_quantile(false_outlier_probability / static_cast<double>(residuals));
   misses.limit =
-      scale * (sigma_known ? z : student_quantile(z, kEfficiencyOfMedian * std::max(dof, 1.0)));
+      scale *
+      (data.noise_is_stated ? z : student_quantile(z, kEfficiencyOfMedian * std::max(dof, 1.0)));
   if (residuals > n) {
     for (std::size_t i = 0; i < n; ++i) {
       misses.magnitude[i] = std::max(misses.magnitude[i], std::abs(fit.points[i].normal_residual));
@@ -72,12 +73,12 @@ Misses misses_of(const CanonicalFit& fit, const Weighing& weighing, bool sigma_k
 }  // namespace
 
 FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vector<bool> aside,
-                       bool sigma_known, double false_outlier_probability) {
+                       double false_outlier_probability) {
   const CanonicalFit* fit = best_class_of(weighing);
   if (fit == nullptr) {
     return {};
   }
-  const auto [magnitude, limit] = misses_of(*fit, weighing, sigma_known, false_outlier_probability);
+  const auto [magnitude, limit] = misses_of(*fit, weighing, false_outlier_probability);
   if (std::none_of(magnitude.begin(), magnitude.end(),
                    [limit = limit](double m) { return m > limit; })) {
     return {};
@@ -128,6 +129,14 @@ std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
     }
   }
   return samples;
+}
+
+std::vector<Vec2> places_of(std::span<const SetAside> samples) {
+  std::vector<Vec2> places_m;
+  for (const SetAside& aside : samples) {
+    places_m.push_back(aside.sample.position_m);
+  }
+  return places_m;
 }
 
 std::vector<bool> samples_set_aside(std::span<const StoredPatch> all,

@@ -20,10 +20,10 @@ struct FarSamples {
 /// Gaussian noise puts a sample so far anywhere in a scene with probability
 /// `false_outlier_probability`. They are no outliers if the curve itself does not fit: runs of more
 /// than three, more than two plus a twentieth of all points, or a misfit of the other points.
-/// `weighing`: of the points of `data` that have no flag in `aside`. `sigma_known`: as given by
-/// make_fit_data; if false, most residuals tell the noise, and the limit is Student's quantile.
+/// `weighing`: of the points of `data` that have no flag in `aside`. Where nobody states the
+/// noise, most residuals tell it, and the limit is Student's quantile.
 FarSamples far_samples(const Weighing& weighing, const FitData& data, std::vector<bool> aside,
-                       bool sigma_known, double false_outlier_probability);
+                       double false_outlier_probability);
 
 struct SetAside {
   StoredSample sample;
@@ -33,6 +33,9 @@ struct SetAside {
 /// The samples with a flag: one flag per sample, or none at all.
 std::vector<SetAside> flagged_samples(std::span<const StoredPatch> patches,
                                       const std::vector<bool>& flagged);
+
+/// Where they lie. [m]
+std::vector<Vec2> places_of(std::span<const SetAside> samples);
 
 /// One flag per sample of `all`: it is not in `used`, or flagged there (one flag per sample, or
 /// none at all).

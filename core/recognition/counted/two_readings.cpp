@@ -60,8 +60,9 @@ bool is_another(const CanonicalFit& fit, const CanonicalFit& told) {
   return !(chi_square_survival(square, static_cast<int>(n + 3)) > kBeyond);
 }
 
-/// What is told, with the classes' probabilities by the rest too, which has the `share` left. No
-/// class gets more than the best of what is told, which both would make AMBIGUOUS.
+/// The reading that is `told`, with the probabilities of both: those of the other reading count by
+/// the `share` that it has. A class of the other reading gets at most what the best class told has:
+/// more would make another class the answer, with a shape that is not its own.
 Weighed with_share_of(Weighed rest, double share, Weighed told) {
   Weighing& w = told.w;
   double sum = 0.0;
@@ -99,7 +100,7 @@ Weighed more_probable(Weighed one, Weighed other, std::span<const StoredPatch> p
     return one;
   }
   const auto aside_of = [&](const Weighed& weighed) {
-    const std::span<const StoredPatch> used = weighed.patches ? *weighed.patches : patches;
+    const std::span<const StoredPatch> used = patches_of(weighed, patches);
     return flagged_samples(all, samples_set_aside(all, used, weighed.outliers));
   };
   const double log_of_one = log_density_of(one, *curve_of_one, aside_of(one));

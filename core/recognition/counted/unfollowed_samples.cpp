@@ -7,7 +7,6 @@
 
 #include "core/local/spikes/block_survey.h"
 #include "core/local/spikes/jumps.h"
-#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 

@@ -6,6 +6,11 @@
 
 namespace palpate {
 
+std::span<const StoredPatch> patches_of(const Weighed& weighed,
+                                        std::span<const StoredPatch> asked) {
+  return weighed.patches ? *weighed.patches : asked;
+}
+
 double signed_distance_m(const ExplainingCurve& from, const StoredSample& sample,
                          double tip_radius_m) {
   const Curve curve = *make_curve(from.shape.curve_class, from.shape.values);

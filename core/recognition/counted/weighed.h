@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/curves/pose2.h"
@@ -27,6 +28,9 @@ struct Weighed {
   /// Of the best class, where `patches` have spikes that it explains.
   std::optional<ExplainingCurve> explains = {};
 };
+
+/// The patches that a weighing is of, which asked about these.
+std::span<const StoredPatch> patches_of(const Weighed& weighed, std::span<const StoredPatch> asked);
 
 /// Of a sample from the curve, or of a tip's centre from where it would touch it; the sign tells
 /// the side. [m]

@@ -8,7 +8,6 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/polynomials/real_roots.h"
-#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {

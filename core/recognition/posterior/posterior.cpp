@@ -9,8 +9,6 @@
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/modes/slices.h"
 #include "core/recognition/posterior/class_limits.h"
-#include "core/recognition/posterior/prior_modes.h"
-#include "core/recognition/posterior/straight_paths.h"
 
 namespace palpate {
 namespace {

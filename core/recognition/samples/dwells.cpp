@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/sample_block.h"
 #include "core/recognition/samples/step_ratio.h"
 

@@ -226,10 +226,8 @@ double rounding_level(const FitData& data) {
   return kRoundings * std::numeric_limits<double>::epsilon() * largest / data.scale;
 }
 
-FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
-                      bool* sigma_known) {
+FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m) {
   FitData data;
-  *sigma_known = true;
   const std::optional<Extents> extents = extents_of(patches);
   if (!extents) {
     return data;
@@ -249,7 +247,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     for (std::size_t i = 0; i < patch.samples.size(); ++i) {
       const StoredSample& sample = patch.samples[i];
       const double sigma_m = sigma_m_of(sample, default_sigma_m);
-      *sigma_known = *sigma_known && sigma_m > 0.0;
+      data.noise_is_stated = data.noise_is_stated && sigma_m > 0.0;
       FitPoint point;
       point.position = to_frame(mean_on_path(patch, i)) / data.scale;
       point.tangent = direction;
@@ -260,7 +258,7 @@ FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma
     }
     data.patches.push_back({begin, data.points.size(), patch.is_joined});
   }
-  if (!*sigma_known) {
+  if (!data.noise_is_stated) {
     data.reading_noise = std::max(reading_noise_m(patches) / data.scale, kFinest);
     // Stated and unstated noise do not mix: if one is not stated, the noise of all is estimated.
     std::size_t i = 0;

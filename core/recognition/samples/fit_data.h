@@ -63,6 +63,9 @@ struct FitData {
   std::vector<PatchSpan> patches;
   Pose2 frame;         ///< centre of the points' box, x along the longer principal axis
   double scale = 1.0;  ///< half the longer side of that box [m]
+  /// Whether the noise of every point is stated. If not, all points have noise 1 (normalised) over
+  /// the root of their weight: only ratios count until the noise is estimated.
+  bool noise_is_stated = true;
   /// Least noise, normalised, where nobody states it: what the rounding of the readings leaves
   /// (local/reading_step.h), or kFinest.
   double reading_noise = 0.0;
@@ -81,13 +84,10 @@ inline Vec2 world_m(const FitData& data, const FitPoint& point) {
 }
 
 /// Converts stored samples to fit points. `default_sigma_m`: noise of samples that state none; 0 =
-/// not known [m]. `sigma_known` receives whether every point has a noise. If not, all points get
-/// noise 1 (normalised) over the root of their weight: only ratios count until the noise is
-/// estimated. Noise below the rounding of the coordinates is raised to it. Tip radii become
+/// not stated [m]. Noise below the rounding of the coordinates is raised to it. Tip radii become
 /// offsets. Empty patches are left out. Normals and covariances are kept only if every noise is
-/// known.
-FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m,
-                      bool* sigma_known);
+/// stated.
+FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m);
 
 /// Ratio of the noise of a contact to that of a stored sample (a mean of several in long patches);
 /// 1 if none are merged.

@@ -7,6 +7,7 @@
 #include "core/recognition/samples/dwell_means.h"
 #include "core/recognition/samples/mean_on_path.h"
 #include "core/recognition/samples/merged_samples.h"
+#include "core/recognition/samples/sample_faults.h"
 
 namespace palpate {
 namespace {
@@ -85,12 +86,10 @@ SampleMemory::SampleMemory(const MemoryOptions& options) : options_(at_least_usa
 AddResult SampleMemory::add(const PatchContext& context, std::span<const ContactSample> samples,
                             std::span<const SampleDetail> details) {
   AddResult result;
-  if (!(context.tip_radius_m >= 0.0) || !std::isfinite(context.tip_radius_m)) {
-    result.rejected_tip_radius = samples.size();
-    return result;
-  }
-  if (!details.empty() && details.size() != samples.size()) {
-    result.rejected_detail = samples.size();
+  if (const SampleFault fault = fault_of_all(context, samples, details);
+      fault != SampleFault::None) {
+    (fault == SampleFault::TipRadius ? result.rejected_tip_radius : result.rejected_detail) =
+        samples.size();
     return result;
   }
   auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
@@ -101,16 +100,10 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
   }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const ContactSample& sample = samples[i];
-    if (!sample.position_m.allFinite() || !std::isfinite(sample.sigma_m)) {
-      ++result.rejected_not_finite;
-      continue;
-    }
-    if (sample.sigma_m < 0.0) {
-      ++result.rejected_negative_sigma;
-      continue;
-    }
-    if (!details.empty() && !is_sound(details[i])) {
-      ++result.rejected_detail;
+    if (const SampleFault fault = fault_of(i, samples, details); fault != SampleFault::None) {
+      ++(fault == SampleFault::NotFinite       ? result.rejected_not_finite
+         : fault == SampleFault::NegativeSigma ? result.rejected_negative_sigma
+                                               : result.rejected_detail);
       continue;
     }
     if (place == patches_.end()) {
@@ -179,8 +172,6 @@ std::size_t SampleMemory::sample_count() const {
   }
   return count;
 }
-
-std::size_t SampleMemory::stored_count() const { return count_samples(patches_); }
 
 ContactRun as_contacts(const StoredPatch& patch) {
   ContactRun run;

@@ -78,9 +78,6 @@ class SampleMemory {
   /// Contacts accepted since clear(), without those of forgotten patches.
   std::size_t sample_count() const;
 
-  /// Samples stored; a mean of several counts once.
-  std::size_t stored_count() const;
-
  private:
   using Patch = std::vector<StoredPatch>::iterator;
 

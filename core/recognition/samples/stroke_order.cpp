@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/step_ratio.h"
 
 namespace palpate {
@@ -42,9 +43,7 @@ bool leads_to_and_fro(std::span<const Vec2> stroke, double extent) {
   if (places.size() < kFewest || show_order(places)) {
     return false;
   }
-  const auto third = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / kOneInSteps);
-  std::nth_element(steps.begin(), third, steps.end());
-  return *third > kLongStep * extent;
+  return ranked(steps, steps.size() / kOneInSteps) > kLongStep * extent;
 }
 
 bool lead_mostly_to_and_fro(std::span<const StoredPatch> patches) {

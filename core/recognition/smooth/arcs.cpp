@@ -53,8 +53,9 @@ Arcs arcs_of_noise(Arcs arcs, double times) {
   return arcs;
 }
 
-Arcs smooth_arcs(FitData data, bool sigma_known, const SectionSource& source) {
+Arcs smooth_arcs(FitData data, const SectionSource& source) {
   Arcs arcs;
+  const bool sigma_known = data.noise_is_stated;
   if (!sigma_known) {
     weigh_strokes(&data);
   }

@@ -35,6 +35,6 @@ Arcs arcs_of_noise(Arcs arcs, double times);
 
 /// Fits the smooth model. `data`: from make_fit_data. If the noise is not stated, sets it from the
 /// model's residuals. `source`: fit_smooth_model's.
-Arcs smooth_arcs(FitData data, bool sigma_known, const SectionSource& source = {});
+Arcs smooth_arcs(FitData data, const SectionSource& source = {});
 
 }  // namespace palpate

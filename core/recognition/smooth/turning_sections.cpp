@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/numerics/median.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/turning_points.h"
 
 namespace palpate {

@@ -167,9 +167,8 @@ enum class Bends { AreFollowed, MayBeSharp };
 
 /// Whether a smooth path through the runs, in their order, leaves no more than the stated noise.
 bool leaves_noise(std::span<const StoredPatch> runs, Bends bends, double default_sigma_m) {
-  bool sigma_known = false;
-  FitData data = make_fit_data(runs, default_sigma_m, &sigma_known);
-  const SmoothModel smooth = fit_smooth_model(&data, sigma_known);
+  FitData data = make_fit_data(runs, default_sigma_m);
+  const SmoothModel smooth = fit_smooth_model(&data, data.noise_is_stated);
   const bool followed = std::none_of(smooth.sections.begin(), smooth.sections.end(),
                                      [](const ReducedSection& section) { return section.kept; });
   return (followed || bends == Bends::MayBeSharp) && can_be_noise(smooth.chi2, smooth.dof());
@@ -268,10 +267,9 @@ std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, cons
   for (const std::size_t p : spread(patches, lone, touches_sought(stated))) {
     sought.push_back(patches[p]);
   }
-  bool sigma_known = false;
-  const FitData data = make_fit_data(sought, default_sigma_m, &sigma_known);
+  const FitData data = make_fit_data(sought, default_sigma_m);
   std::optional<WarmStart> start;
-  for (const PlacedCurve& curve : curves_through(data, sigma_known, classes, &start, work)) {
+  for (const PlacedCurve& curve : curves_through(data, classes, &start, work)) {
     work.spend(kind_of_foot(class_of(curve.curve)), lone.size());
     Joined joined = joined_along(patches, lone, curve);
     const bool holds =

@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/smooth/arcs.h"
@@ -70,9 +69,9 @@ std::vector<PlacedCurve> best_first(const ClassFits& fits, const Arcs& arcs, uns
 
 }  // namespace
 
-std::vector<PlacedCurve> curves_through(const FitData& data, bool sigma_known, unsigned classes,
+std::vector<PlacedCurve> curves_through(const FitData& data, unsigned classes,
                                         std::optional<WarmStart>* start, WorkBudget& work) {
-  const Arcs arcs = smooth_arcs(data, sigma_known);
+  const Arcs arcs = smooth_arcs(data);
   const FitData& reduced = arcs.smooth.reduced;
   // A conic gives the order, whatever other classes fit, if it explains the touches within their
   // noise and does not go back and forth between them (as the two sides of a needle would).

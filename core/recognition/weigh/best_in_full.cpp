@@ -10,6 +10,7 @@
 
 #include "core/numerics/probability/negligible.h"
 #include "core/numerics/probability/normal_law.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
@@ -76,9 +77,7 @@ std::vector<std::size_t> wrong_normals(const CanonicalFit& placed, const FitData
       misses.push_back(std::abs(placed.points[i].normal_residual));
     }
   }
-  const auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-  std::nth_element(misses.begin(), middle, misses.end());
-  const double limit = kNegligibleDeviations * std::max(1.0, *middle / kMedianOfNormal);
+  const double limit = kNegligibleDeviations * std::max(1.0, median_of(misses) / kMedianOfNormal);
   std::vector<std::size_t> wrong;
   for (std::size_t i = 0; i < data.details.size(); ++i) {
     if (data.details[i].inverse_normal_sigma > 0.0 &&

@@ -9,7 +9,6 @@
 
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
-#include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
 namespace {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -15,13 +16,10 @@
 namespace palpate {
 namespace {
 
+/// -infinity where no class has any evidence.
 double log_sum(const ByClass<double>& logs) {
-  const double top = *std::max_element(logs.begin(), logs.end());
-  double sum = 0.0;
-  for (const double log : logs) {
-    sum += std::exp(log - top);
-  }
-  return top + std::log(sum);
+  return std::accumulate(logs.begin(), logs.end(), -std::numeric_limits<double>::infinity(),
+                         log_add);
 }
 
 /// The classes that such deviations are asked of, the best of all first: what leaves less

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/numerics/probability/negligible.h"
-#include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"

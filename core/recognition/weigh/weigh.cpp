@@ -57,7 +57,7 @@ struct Placed {
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
 /// `start`: what the last weighing kept for it; may be nullptr.
 Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceContext& context,
-                      const WeighOptions& options, const Evidences& of_paths = {}) {
+                      const WeighOptions& options, const Evidences& of_paths) {
   const Arcs& arcs = context.arcs;
   Contenders contenders;
   contenders.coarse = testable(std::move(coarse), with_limits(options.classes), arcs);
@@ -299,10 +299,10 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
 
 }  // namespace
 
-Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               WorkBudget& work, const WeighOptions& options, std::span<const SidedStart> starts) {
+Weighing weigh(FitData data, std::span<const StoredPatch> patches, WorkBudget& work,
+               const WeighOptions& options, std::span<const SidedStart> starts) {
   const std::size_t samples = data.points.size();
-  Arcs arcs = smooth_arcs(std::move(data), sigma_known, {patches, options.kept_sections});
+  Arcs arcs = smooth_arcs(std::move(data), {patches, options.kept_sections});
   work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.smoothings));
   return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }

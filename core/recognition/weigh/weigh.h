@@ -76,8 +76,7 @@ struct Weighing {
 /// `data`: from make_fit_data. Follows core/README.md, "Refinement and the bound" and "The
 /// posterior". `starts`: those of an earlier weighing of fewer samples of the same patches, or
 /// empty.
-Weighing weigh(FitData data, bool sigma_known, std::span<const StoredPatch> patches,
-               WorkBudget& work, const WeighOptions& options = {},
-               std::span<const SidedStart> starts = {});
+Weighing weigh(FitData data, std::span<const StoredPatch> patches, WorkBudget& work,
+               const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
 
 }  // namespace palpate

@@ -29,16 +29,15 @@ std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
 
 }  // namespace
 
-Weighing weigh_in_full(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
-                       WorkBudget& work, const WeighOptions& options,
-                       std::span<const SidedStart> starts) {
-  Weighing w = weigh(data, sigma_known, patches, work, options, starts);
+Weighing weigh_in_full(const FitData& data, std::span<const StoredPatch> patches, WorkBudget& work,
+                       const WeighOptions& options, std::span<const SidedStart> starts) {
+  Weighing w = weigh(data, patches, work, options, starts);
   if (data.details.empty()) {
     return w;
   }
   const auto across = weighed_across(w, data);
   if (across && work.allows()) {
-    w = weigh(*across, sigma_known, patches, work, options, starts);
+    w = weigh(*across, patches, work, options, starts);
   }
   return work.allows() ? best_in_full(std::move(w), data, work) : w;
 }

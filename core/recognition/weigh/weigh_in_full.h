@@ -7,8 +7,7 @@ namespace palpate {
 
 /// weigh(), with covariances as they lie across the curve and normals along strokes. Where no point
 /// says more than a position and a noise of one size it is weigh(), to the bit.
-Weighing weigh_in_full(const FitData& data, bool sigma_known, std::span<const StoredPatch> patches,
-                       WorkBudget& work, const WeighOptions& options = {},
-                       std::span<const SidedStart> starts = {});
+Weighing weigh_in_full(const FitData& data, std::span<const StoredPatch> patches, WorkBudget& work,
+                       const WeighOptions& options = {}, std::span<const SidedStart> starts = {});
 
 }  // namespace palpate

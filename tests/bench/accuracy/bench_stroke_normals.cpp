@@ -38,8 +38,7 @@ FitData data_of(const test::Scene& scene, double sigma_m, double normal_sigma_ra
     context.patch = static_cast<std::uint32_t>(p);
     memory.add(context, samples);
   }
-  bool sigma_known = true;
-  FitData data = make_fit_data(memory.patches(), 0.0, &sigma_known);
+  FitData data = make_fit_data(memory.patches(), 0.0);
   // A normal is used in full only at a patch of one sample, so each sample becomes a patch.
   data.patches.clear();
   for (std::size_t i = 0; i < data.points.size(); ++i) {

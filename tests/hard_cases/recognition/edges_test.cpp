@@ -173,8 +173,7 @@ TEST(Edges, LeaveNoLessThanANarrowCusp) {
     const double sigma_m = 0.01 * kSize;
     double of_cusp = 0.0;
     const StoredPatch patch = stroked_over_cusp(curve, std::sqrt(kSize), sigma_m, rng, &of_cusp);
-    bool sigma_known = false;
-    const Arcs arcs = smooth_arcs(make_fit_data({&patch, 1}, 0.0, &sigma_known), sigma_known);
+    const Arcs arcs = smooth_arcs(make_fit_data({&patch, 1}, 0.0));
     WorkBudget work;
     const auto edges = edges_of(arcs, std::numeric_limits<double>::infinity(), work);
     if (edges) {

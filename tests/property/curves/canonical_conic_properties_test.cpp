@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "tests/property/curves/random_curves.h"
+#include "tests/support/conic_equation.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -26,7 +27,8 @@ TEST(CanonicalConicProperties, EveryCurveComesBackFromItsEquation) {
       const Pose2 pose{unit * uniform(rng, -3.0, 3.0), unit * uniform(rng, -3.0, 3.0),
                        uniform(rng, -kPi, kPi)};
       const double factor = random_sign(rng) * std::pow(10.0, uniform(rng, -9.0, 9.0));
-      const ConicCanonicalisation back = canonicalise(factor * conic_of(curve_class, values, pose));
+      const ConicCanonicalisation back =
+          canonicalise(factor * test::conic_of(curve_class, values, pose));
       ASSERT_TRUE(back.curve.has_value())
           << name_of(curve_class) << " " << describe(back.degeneracy);
       ASSERT_EQ(back.curve->curve_class, curve_class) << values.transpose() << " unit " << unit;
@@ -64,7 +66,7 @@ TEST(CanonicalConicProperties, PointsOfTheCurveSatisfyItsEquation) {
     for (const CurveClass curve_class : kClasses) {
       const RandomCurve random = random_curve(curve_class, rng);
       const Pose2 pose{uniform(rng, -3.0, 3.0), uniform(rng, -3.0, 3.0), uniform(rng, -kPi, kPi)};
-      const ConicCoefficients q = conic_of(curve_class, random.values, pose);
+      const ConicCoefficients q = test::conic_of(curve_class, random.values, pose);
       const Vec2 p = pose * position(random.curve, random.random_t(rng));
       Eigen::Matrix<double, 6, 1> terms;
       terms << p.x() * p.x(), p.x() * p.y(), p.y() * p.y(), p.x(), p.y(), 1.0;

@@ -154,10 +154,9 @@ TEST(BoundedWork, SpentBeforeItBeginsLeavesLineAndCircle) {
   for (const bench::TouchedPatch& patch : bench::clean_ellipse_like(like)) {
     memory.add(patch.context, patch.samples);
   }
-  bool sigma_known = false;
-  const FitData data = make_fit_data(memory.patches(), 0.0, &sigma_known);
+  const FitData data = make_fit_data(memory.patches(), 0.0);
   WorkBudget work(0.0, 0.0);
-  const Weighing w = weigh(data, sigma_known, memory.patches(), work);
+  const Weighing w = weigh(data, memory.patches(), work);
   EXPECT_TRUE(work.was_cut());
   EXPECT_TRUE(w.fits[static_cast<std::size_t>(CurveClass::Line)].has_value());
   EXPECT_TRUE(w.fits[static_cast<std::size_t>(CurveClass::Circle)].has_value());

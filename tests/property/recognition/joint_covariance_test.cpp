@@ -88,7 +88,7 @@ void add(const Recognition& answer, const test::Scene& scene, Count* count) {
   count->beyond_outer += published > chi_square_threshold(kOuter, dof) ? 1 : 0;
   count->beyond_inner += published > chi_square_threshold(kInner, dof) ? 1 : 0;
   // The covariance linearised at the estimate, from the points before any is set aside as a spike.
-  const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), true, {}, test::unbounded_work());
+  const Weighing w = weigh(test::fit_data(scene, scene.sigma_m), {}, test::unbounded_work());
   const auto& fit = w.canonical[static_cast<std::size_t>(scene.curve_class)];
   if (w.best == scene.curve_class && fit) {
     Hypothesis linear = answer.hypotheses.front();

@@ -126,6 +126,21 @@ TEST(TakeEstimates, GivesEachOnceInOrder) {
   EXPECT_TRUE(recognizer.take_estimates().empty());
 }
 
+TEST(TakeEstimates, HaveNothingOfSamplesThatTheMemoryRefuses) {
+  const std::vector<ContactSample> samples = stroke(kEllipse, 0.05);
+  std::vector<SampleDetail> details(samples.size());
+  for (SampleDetail& detail : details) {
+    detail.normal = Vec2(2.0, 0.0);  // no unit vector
+    detail.normal_sigma_rad = 0.1;
+  }
+  Recognizer recognizer;
+  recognizer.stream_estimates(true);
+  EXPECT_EQ(recognizer.add({.tip_radius_m = -1e-3}, samples).accepted, 0U);
+  EXPECT_EQ(recognizer.add({}, samples, details).accepted, 0U);
+  EXPECT_EQ(recognizer.add({}, samples, std::span(details).first(1)).accepted, 0U);
+  EXPECT_TRUE(recognizer.take_estimates().empty());
+}
+
 TEST(TakeEstimates, OfARoundTipWaitForTheSide) {
   const std::vector<ContactSample> samples = stroke(kEllipse, 0.05, -0.005);
   PatchContext context;

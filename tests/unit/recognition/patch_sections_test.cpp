@@ -21,10 +21,7 @@ std::vector<StoredPatch> touched(const test::Scene& scene, double sigma_m, doubl
   return patches;
 }
 
-FitData data_of(const std::vector<StoredPatch>& patches) {
-  bool sigma_known = false;
-  return make_fit_data(patches, 0.0, &sigma_known);
-}
+FitData data_of(const std::vector<StoredPatch>& patches) { return make_fit_data(patches, 0.0); }
 
 /// Coordinates are of size 1, and chords as short as a tenth of that lose a digit.
 constexpr double kRounding = 1e-12;

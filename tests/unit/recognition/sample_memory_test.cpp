@@ -40,7 +40,7 @@ TEST(SampleMemory, PatchesAreKeptApartAndBounded) {
   }
   ASSERT_EQ(memory.patches().size(), 3U);
   EXPECT_EQ(memory.patches().front().context.patch, 2U);
-  EXPECT_EQ(memory.stored_count(), 6U);
+  EXPECT_EQ(count_samples(memory.patches()), 6U);
 }
 
 TEST(SampleMemory, ThePatchThatGrowsIsNotForgottenHoweverOld) {
@@ -93,7 +93,7 @@ TEST(SampleMemory, LongPatchesAreMergedWithoutLosingContactsAndStayOnThePath) {
   }
   EXPECT_EQ(memory.add({}, samples).accepted, 1000U);
   EXPECT_EQ(memory.sample_count(), 1000U);
-  EXPECT_LE(memory.stored_count(), 64U);
+  EXPECT_LE(count_samples(memory.patches()), 64U);
   const StoredPatch& patch = memory.patches().front();
   const double step = 1e-3 * patch.contacts_per_sample;
   for (std::size_t i = 0; i < patch.samples.size(); ++i) {

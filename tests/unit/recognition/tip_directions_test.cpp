@@ -80,9 +80,8 @@ TEST(TipDirections, EdgesTellThemWhereChordsLeadRoundTheBend) {
       patches.push_back(rolled(corner, turned, rng));
       travel.push_back(turned ? -1.0 : 1.0);
     }
-    bool sigma_known = false;
-    FitData data = make_fit_data(patches, 0.0, &sigma_known);
-    const Arcs arcs = smooth_arcs(std::move(data), sigma_known);
+    FitData data = make_fit_data(patches, 0.0);
+    const Arcs arcs = smooth_arcs(std::move(data));
     WorkBudget work;
     const auto edges = edges_of(arcs, kAnyChi2, work);
     ASSERT_TRUE(edges.has_value()) << i;

@@ -87,10 +87,9 @@ TEST(KeptModes, AreFoundAgain) {
     const CurveClass truth = kCurveClasses[static_cast<std::size_t>(i) % kCurveClasses.size()];
     const test::Scene scene =
         test::random_scene(truth, {.patches = 2, .points_per_patch = 60}, rng);
-    bool sigma_known = false;
     const auto patches = test::stored_patches(scene, scene.sigma_m);
-    const FitData data = make_fit_data(patches, 0.0, &sigma_known);
-    const Weighing w = weigh(data, sigma_known, patches, test::unbounded_work());
+    const FitData data = make_fit_data(patches, 0.0);
+    const Weighing w = weigh(data, patches, test::unbounded_work());
     const KeptModes& modes = w.starts.front().modes;
     const FitData moved =
         in_frame(w.reduced, {test::uniform(rng, -1.0, 1.0), test::uniform(rng, -1.0, 1.0),

@@ -33,7 +33,8 @@ TEST_P(WeighingOf, WhatIsPublishedIsRefinedOnAllPoints) {
   for_each_scene(GetParam(), [](const test::Scene& scene) {
     for (const bool sigma_known : {true, false}) {
       FitData data = test::fit_data(scene, sigma_known ? scene.sigma_m : 1.0);
-      const Weighing w = weigh(std::move(data), sigma_known, {}, test::unbounded_work());
+      data.noise_is_stated = sigma_known;
+      const Weighing w = weigh(std::move(data), {}, test::unbounded_work());
       const auto best = static_cast<std::size_t>(w.best);
       if (w.fits[best]) {
         EXPECT_TRUE(w.fits[best]->on_all || w.fits[best]->at_limit);

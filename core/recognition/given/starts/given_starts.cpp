@@ -32,8 +32,7 @@ FitData seed_data(std::span<const Vec2> points, Order order) {
     }
     patches.back().samples.push_back({point, 0.0, 1.0});
   }
-  bool sigma_known = false;
-  return make_fit_data(patches, 0.0, &sigma_known);
+  return make_fit_data(patches, 0.0);
 }
 
 /// Converts a curve from the frame of `data` to the frame of the points.

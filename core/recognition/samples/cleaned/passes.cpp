@@ -8,8 +8,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/jumps.h"
-#include "core/numerics/median.h"
-#include "core/recognition/samples/cleaned/stored_spikes.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/turning_points.h"
 
 namespace palpate {
