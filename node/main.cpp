@@ -113,10 +113,6 @@ void tell_of(const palpate::ProbeFiles& files) {
 int serve(const NodeOptions& options, const palpate::NodeKeys& keys,
           palpate::ProbeFiles probe_files) {
   const int stop_fd = palpate::take_stop_signals();
-  if (stop_fd < 0) {
-    spdlog::error("no signalfd");
-    return kFailed;
-  }
   const int reload_fd = palpate::take_reload_signal();
   bool unfinished = false;
   try {

@@ -2,8 +2,6 @@
 
 #include <malloc.h>
 #include <spdlog/spdlog.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <memory>
@@ -123,16 +121,6 @@ std::unique_ptr<PeerGuard> Node::guard(zmq::socket_t& socket,
   }
   guards_.push_back(std::make_unique<ReconnectGuard>(context_, socket, std::move(connected)));
   return nullptr;
-}
-
-void Node::run(const std::stop_token& stop) {
-  const int fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-  if (fd < 0) throw std::runtime_error("no eventfd");
-  {
-    const std::stop_callback wake(stop, [fd] { (void)::eventfd_write(fd, 1); });
-    run(fd);
-  }
-  ::close(fd);
 }
 
 void Node::run(int stop_fd, int reload_fd) {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 #include <zmq.hpp>
@@ -40,10 +39,6 @@ class Node {
   /// at most 0.2 s, and returns. When `reload_fd` (take_reload_signal) signals, reads the list of
   /// allowed clients and the probe files again.
   void run(int stop_fd, int reload_fd = -1);
-
-  /// The same, until a stop is requested.
-  void run(const std::stop_token& stop);
-
   /// Number of recognitions that still computed when run() gave up waiting for them.
   std::size_t unfinished_count() const { return workers_.busy_count(); }
 

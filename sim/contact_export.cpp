@@ -15,18 +15,6 @@ MaterialSide reported_side(const SimulatedPatch& patch) {
   return patch.side_is_reported ? patch.side : MaterialSide::Unspecified;
 }
 
-v1::MaterialSide to_wire_side(MaterialSide side) {
-  switch (side) {
-    case MaterialSide::Left:
-      return v1::MATERIAL_SIDE_LEFT;
-    case MaterialSide::Right:
-      return v1::MATERIAL_SIDE_RIGHT;
-    case MaterialSide::Unspecified:
-      break;
-  }
-  return v1::MATERIAL_SIDE_UNSPECIFIED;
-}
-
 std::size_t intern(std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) {
@@ -83,7 +71,7 @@ std::vector<TimedBatch> make_batches(const Scene& scene, std::span<const Simulat
         timed.batch.set_object(object);
         timed.batch.set_patch(patch.number);
         timed.batch.set_tip_radius_m(probes[i].tip_radius_m);
-        timed.batch.set_material_side(to_wire_side(reported_side(patch)));
+        timed.batch.set_material_side(to_wire(reported_side(patch)));
         timed.batch.mutable_header()->set_frame(
             scene.description.frame().empty() ? std::string("world") : scene.description.frame());
         batches.push_back(timed);

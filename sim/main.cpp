@@ -63,11 +63,11 @@ void add_options(CLI::App& app, CommandLine& options) {
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--pause", options.pause_s, "Seconds between two scenes")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->type_name("S");
   app.add_option("--wait", options.wait_s, "Seconds to wait for a recognizer before giving up")
-      ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->type_name("S");
   app.add_option("--object", options.object,

@@ -59,6 +59,16 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
   for (const std::string& path : {contacts_path_, results_path_}) {
     std::filesystem::remove(path, ignored);
   }
+  // Before there is a process: what throws leaves none behind.
+  // Status last: when it arrives, the other subscriptions are active too.
+  for (const TopicKind kind : {TopicKind::Contact, TopicKind::Recognition, TopicKind::Status}) {
+    results_.set(zmq::sockopt::subscribe, topic_prefix(kind));
+  }
+  for (const auto& [socket, path] :
+       {std::pair(&contacts_, &contacts_path_), std::pair(&results_, &results_path_)}) {
+    const std::string error = attach(*socket, Endpoint{false, "ipc://" + *path});
+    if (!error.empty()) throw std::runtime_error(error);
+  }
   const pid_t parent = ::getpid();
   process_ = ::fork();
   if (process_ < 0) throw std::runtime_error("no process for a node");
@@ -71,15 +81,6 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
     ::execvp(pointers.front(), pointers.data());
     ::_exit(127);
-  }
-  // Status last: when it arrives, the other subscriptions are active too.
-  for (const TopicKind kind : {TopicKind::Contact, TopicKind::Recognition, TopicKind::Status}) {
-    results_.set(zmq::sockopt::subscribe, topic_prefix(kind));
-  }
-  for (const auto& [socket, path] :
-       {std::pair(&contacts_, &contacts_path_), std::pair(&results_, &results_path_)}) {
-    const std::string error = attach(*socket, Endpoint{false, "ipc://" + *path});
-    if (!error.empty()) throw std::runtime_error(error);
   }
 }
 

@@ -214,10 +214,6 @@ int main(int argc, char** argv) {
     return kUsage;
   }
   const int stop_fd = take_stop_signals();
-  if (stop_fd < 0) {
-    spdlog::error("no signalfd");
-    return kFailed;
-  }
   try {
     gateway::Gateway gateway(line.gateway);
     gateway.run(stop_fd);

@@ -359,8 +359,12 @@ void Place::stored(const std::string& name, const Stored& stored) {
 /// or ours, whose confirmation a dying server did not send.
 void Place::is_it_ours(const std::string& name) {
   read_last_answer(plant_, this, name_.cell, name, [this, name](const PlantMessage* message) {
-    const std::string& id = groups_[name].answers.front().id;
-    if (message != nullptr && message->header("Nats-Msg-Id") == id) {
+    Group& group = groups_[name];
+    if (message == nullptr || (!message->status().empty() && message->status() != "404")) {
+      group.is_storing = false;  // not told: tend() stores again, with the same id
+      return;
+    }
+    if (message->header("Nats-Msg-Id") == group.answers.front().id) {
       return stored(name, {Stored::Verdict::Before, message->number("Nats-Sequence")});
     }
     status_.set_answers_refused(status_.answers_refused() + 1);

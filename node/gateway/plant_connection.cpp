@@ -1,8 +1,5 @@
 #include "node/gateway/plant_connection.h"
 
-#include <sys/eventfd.h>
-#include <unistd.h>
-
 #include <stdexcept>
 #include <utility>
 
@@ -48,13 +45,6 @@ natsOptions* new_options() {
 
 }  // namespace
 
-PlantConnection::State::~State() { ::close(wake_fd); }
-
-void PlantConnection::State::wake() const {
-  const std::uint64_t one = 1;
-  (void)!::write(wake_fd, &one, sizeof one);
-}
-
 void PlantConnection::State::take(std::uint64_t subscription, natsMsg* message) {
   PlantMessage taken(subscription, message);
   bool first = false;
@@ -68,7 +58,7 @@ void PlantConnection::State::take(std::uint64_t subscription, natsMsg* message) 
     first = arrived.empty();
     arrived.push_back(std::move(taken));
   }
-  if (first) wake();
+  if (first) bell.ring();
 }
 
 void PlantConnection::State::complain(std::string_view text) {
@@ -78,7 +68,6 @@ void PlantConnection::State::complain(std::string_view text) {
 
 PlantConnection::PlantConnection(const PlantOptions& options)
     : state_(std::make_shared<State>()), options_(new_options(), &natsOptions_Destroy) {
-  state_->wake_fd = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
   natsOptions* nats = options_.get();
   std::vector<const char*> urls;
   for (const std::string& url : options.urls) urls.push_back(url.c_str());
@@ -118,12 +107,12 @@ void PlantConnection::set_callbacks() {
     auto* told = static_cast<State*>(closure);
     ++told->connections;
     told->connected = true;
-    told->wake();
+    told->bell.ring();
   };
   const auto is_down = [](natsConnection* /*connection*/, void* closure) {
     auto* told = static_cast<State*>(closure);
     told->connected = false;
-    told->wake();
+    told->bell.ring();
   };
   const auto is_closed = [](natsConnection* connection, void* closure) {
     auto* told = static_cast<State*>(closure);
@@ -133,7 +122,7 @@ void PlantConnection::set_callbacks() {
     }
     told->connected = false;
     told->closed = true;
-    told->wake();
+    told->bell.ring();
   };
   // (Without a handler libnats prints to standard error.)
   const auto complains = [](natsConnection* connection, natsSubscription* /*subscription*/,
@@ -161,7 +150,7 @@ void PlantConnection::connect() {
       attempt.complaint =
           complaint_of(nats_GetLastError(&status), attempt.status);  // of this thread
     }
-    state->wake();
+    state->bell.ring();
     return attempt;
   });
 }
@@ -214,8 +203,7 @@ std::string PlantConnection::take_complaint() {
 }
 
 void PlantConnection::serve(SteadyTime now) {
-  std::uint64_t count = 0;
-  (void)!::read(state_->wake_fd, &count, sizeof count);
+  state_->bell.hear();
   renew(now);
   std::vector<PlantMessage> arrived;
   {

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "node/gateway/plant_message.h"
+#include "node/process/bell.h"
 #include "node/process/clock.h"
 
 namespace palpate::gateway {
@@ -50,8 +51,8 @@ class PlantConnection {
   std::string take_complaint();
 
   /// To be polled for input; then call serve().
-  int fd() const { return state_->wake_fd; }
-  void wake() const { state_->wake(); }
+  int fd() const { return state_->bell.fd(); }
+  void wake() const { state_->bell.ring(); }
   /// Calls the listeners of what has arrived. Throws std::runtime_error if an address is malformed.
   void serve(SteadyTime now);
 
@@ -73,14 +74,12 @@ class PlantConnection {
     std::atomic<bool> closed{false};
     std::atomic<std::uint64_t> connections{0};
     std::atomic<std::uint64_t> dropped{0};
-    int wake_fd = -1;
+    Bell bell{Bell::Hearing::AtOnce};
     std::mutex mutex;
     bool ended = false;
     std::vector<PlantMessage> arrived;
     std::string complaint;
 
-    ~State();
-    void wake() const;
     void take(std::uint64_t subscription, natsMsg* message);
     void complain(std::string_view text);
   };

@@ -2,7 +2,6 @@
 
 #include <pthread.h>
 #include <sched.h>
-#include <sys/eventfd.h>
 #include <sys/resource.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -78,31 +77,13 @@ class Turn {
 
 }  // namespace
 
-/// An eventfd: one thread signals, another waits.
-struct Workers::Bell {
-  explicit Bell(int flags) : fd(::eventfd(0, EFD_CLOEXEC | flags)) {
-    if (fd < 0) throw std::runtime_error("no eventfd");
-  }
-  ~Bell() { ::close(fd); }
-  Bell(const Bell&) = delete;
-  Bell& operator=(const Bell&) = delete;
-
-  void ring() const { (void)::eventfd_write(fd, 1); }
-  void hear() const {
-    eventfd_t count = 0;
-    (void)::eventfd_read(fd, &count);
-  }
-
-  const int fd;
-};
-
 /// Shared by the node's thread and the worker's thread. Lives as long as either needs it.
 struct Workers::Worker {
   // Setting the state hands `work` and `expected` to the other thread.
   enum class State { Idle, Ordered, Finished };
 
   explicit Worker(std::shared_ptr<Bell> finished_bell)
-      : ordered(0), finished(std::move(finished_bell)) {}
+      : ordered(Bell::Hearing::Waits), finished(std::move(finished_bell)) {}
 
   void serve(Pace pace) {
     Turn turn(pace);
@@ -128,7 +109,7 @@ struct Workers::Worker {
 };
 
 Workers::Workers(std::size_t quick_count, std::size_t slow_count)
-    : finished_(std::make_shared<Bell>(EFD_NONBLOCK)), quick_count_(quick_count) {
+    : finished_(std::make_shared<Bell>(Bell::Hearing::AtOnce)), quick_count_(quick_count) {
   for (std::size_t i = 0; i < quick_count + slow_count; ++i) {
     const Pace pace = i < quick_count ? Pace::Quick : Pace::Slow;
     auto worker = std::make_shared<Worker>(finished_);
@@ -191,6 +172,6 @@ std::optional<std::size_t> Workers::take_finished() {
   return std::nullopt;
 }
 
-int Workers::finished_fd() const { return finished_->fd; }
+int Workers::finished_fd() const { return finished_->fd(); }
 
 }  // namespace palpate

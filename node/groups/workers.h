@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "node/groups/work.h"
+#include "node/process/bell.h"
 
 namespace palpate {
 
@@ -48,7 +49,6 @@ class Workers {
   int finished_fd() const;
 
  private:
-  struct Bell;
   struct Worker;
 
   std::optional<std::size_t> idle(Pace pace) const;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "node/wire/convert.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -105,19 +107,9 @@ RejectReason ContactDecoder::check_context() {
   const double radius = batch_.tip_radius_m();
   if (!std::isfinite(radius)) return v1::REJECT_REASON_NOT_FINITE;
   if (radius < 0.0 || radius > limits_.max_tip_radius_m) return v1::REJECT_REASON_TIP_RADIUS;
-  switch (batch_.material_side()) {
-    case v1::MATERIAL_SIDE_UNSPECIFIED:
-      message_.material_side = MaterialSide::Unspecified;
-      break;
-    case v1::MATERIAL_SIDE_LEFT:
-      message_.material_side = MaterialSide::Left;
-      break;
-    case v1::MATERIAL_SIDE_RIGHT:
-      message_.material_side = MaterialSide::Right;
-      break;
-    default:
-      return v1::REJECT_REASON_MATERIAL_SIDE;
-  }
+  const std::optional<MaterialSide> side = from_wire(batch_.material_side());
+  if (!side) return v1::REJECT_REASON_MATERIAL_SIDE;
+  message_.material_side = *side;
   message_.object = batch_.object();
   message_.patch = batch_.patch();
   message_.tip_radius_m = radius;

@@ -7,7 +7,6 @@
 #include <spdlog/sinks/base_sink.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <climits>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +31,10 @@ class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
     std::string text;
     if (lost_ > 0) text = fmt::format("({} lines of log lost: nobody read them)\n", lost_);
     text.append(line.data(), line.size());
+    if (text.size() > kMostBytes) {  // cut, but still a line
+      text.resize(kMostBytes);
+      text.back() = '\n';
+    }
     if (write(text)) {
       lost_ = 0;
     } else {
@@ -48,7 +51,7 @@ class LogSink : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
   bool write(std::string_view text) const {
     pollfd ready{fd_, POLLOUT, 0};
     if (::poll(&ready, 1, 0) != 1 || (ready.revents & POLLOUT) == 0) return false;
-    return ::write(fd_, text.data(), std::min(text.size(), kMostBytes)) > 0;
+    return ::write(fd_, text.data(), text.size()) > 0;
   }
 
   int fd_;

@@ -2,24 +2,17 @@
 #pragma once
 
 #include <poll.h>
-#include <pthread.h>
-#include <sys/signalfd.h>
-#include <unistd.h>
 
 #include <csignal>
 
+#include "node/process/take_signals.h"
+
 namespace palpate {
 
-/// Blocks the stop signals and returns a descriptor to read them from; -1 on failure. Call it
-/// before any thread starts, so that every thread (libzmq's too) blocks them.
-inline int take_stop_signals() {
-  sigset_t signals;
-  sigemptyset(&signals);
-  sigaddset(&signals, SIGINT);
-  sigaddset(&signals, SIGTERM);
-  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
-  return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
-}
+/// Blocks the stop signals and returns a descriptor to read them from. Call it before any thread
+/// starts, so that every thread (libzmq's too) blocks them. Ends the program if the system provides
+/// no descriptor: nothing else could.
+inline int take_stop_signals() { return take_signals({SIGINT, SIGTERM}); }
 
 /// True if a stop has been requested.
 inline bool stop_requested(int stop_fd) {

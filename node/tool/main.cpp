@@ -22,22 +22,14 @@ int complain(const std::string& why, int exit_code) {
   return exit_code;
 }
 
-namespace {
-
-CLI::Validator number_check(const char* name, bool zero_is_good) {
-  const auto check = [zero_is_good](const std::string& text) -> std::string {
+CLI::Validator positive_number() {
+  const auto check = [](const std::string& text) -> std::string {
     double value = 0.0;
-    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
-                      (value > 0.0 || (zero_is_good && value == 0.0));
-    return good ? "" : "\"" + text + "\" is no finite number " + (zero_is_good ? ">= 0" : "> 0");
+    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+    return good ? "" : "\"" + text + "\" is no finite number > 0";
   };
-  return CLI::Validator(check, name);
+  return CLI::Validator(check, "POSITIVE");
 }
-
-}  // namespace
-
-CLI::Validator positive_number() { return number_check("POSITIVE", false); }
-CLI::Validator non_negative_number() { return number_check("NONNEGATIVE", true); }
 
 CLI::Validator number_within(double lowest, double highest) {
   std::ostringstream bounds;

@@ -77,6 +77,31 @@ CurveClass from_wire(v1::CurveClass curve_class) {
   return CurveClass::Unclassified;
 }
 
+v1::MaterialSide to_wire(MaterialSide side) {
+  switch (side) {
+    case MaterialSide::Left:
+      return v1::MATERIAL_SIDE_LEFT;
+    case MaterialSide::Right:
+      return v1::MATERIAL_SIDE_RIGHT;
+    case MaterialSide::Unspecified:
+      break;
+  }
+  return v1::MATERIAL_SIDE_UNSPECIFIED;
+}
+
+std::optional<MaterialSide> from_wire(v1::MaterialSide side) {
+  switch (side) {
+    case v1::MATERIAL_SIDE_UNSPECIFIED:
+      return MaterialSide::Unspecified;
+    case v1::MATERIAL_SIDE_LEFT:
+      return MaterialSide::Left;
+    case v1::MATERIAL_SIDE_RIGHT:
+      return MaterialSide::Right;
+    default:
+      return std::nullopt;
+  }
+}
+
 v1::RecognitionStatus to_wire(RecognitionStatus status) {
   switch (status) {
     case RecognitionStatus::Collecting:

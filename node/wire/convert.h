@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string_view>
 
 #include "core/recognition/recognition.h"
+#include "core/recognition/samples/contact_sample.h"
 #include "core/recognition/samples/sample_detail.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/curve.pb.h"
@@ -17,6 +19,10 @@ namespace palpate {
 v1::CurveClass to_wire(CurveClass curve_class);
 /// CurveClass::Unclassified for UNSPECIFIED and for unknown values.
 CurveClass from_wire(v1::CurveClass curve_class);
+
+v1::MaterialSide to_wire(MaterialSide side);
+/// nullopt for a value that the contract does not have.
+std::optional<MaterialSide> from_wire(v1::MaterialSide side);
 
 v1::RecognitionStatus to_wire(RecognitionStatus status);
 v1::RecognitionDoubt to_wire(Doubt doubt);

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/numerics/probability/negligible.h"
 #include "core/qualification/probe_correction.h"
 #include "core/qualification/probe_residuals.h"
 #include "core/recognition/given/given_class.h"

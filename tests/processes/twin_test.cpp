@@ -11,6 +11,7 @@
 #include "node/client/result_subscriber.h"
 #include "node/config.h"
 #include "node/node.h"
+#include "node/process/bell.h"
 
 namespace palpate {
 namespace {
@@ -39,7 +40,8 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
   Node node(options, NodeKeys{});
   const std::string contacts = node.contacts_address();
   const std::string results = node.results_address();
-  std::jthread server([&](const std::stop_token& stop) { node.run(stop); });
+  const Bell stop(Bell::Hearing::AtOnce);
+  std::jthread server([&] { node.run(stop.fd()); });
 
   constexpr int kProbes = 3;
   constexpr std::uint64_t kObjects = 5;
@@ -75,6 +77,7 @@ TEST(Twin, NodeProbesAndPlannersShareNothing) {
     });
   }
   threads.clear();
+  stop.ring();
   EXPECT_EQ(answered.load(), kProbes * static_cast<int>(kObjects));
   EXPECT_GT(estimates.load(), 0);
 }

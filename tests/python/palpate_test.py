@@ -559,6 +559,9 @@ with palpate.Planner(RESULTS) as planner, palpate.Probe("finger", CONTACTS, sigm
         planner.receive(timeout=0.2)
     except TimeoutError as error:
         print("silent:", error)
+    probe.send([[30.0, 0.0]])
+    planner._wait(20)
+    print("waiting:", planner.receive(timeout=0).sample_count)
 try:
     palpate.Probe("finger", "ipc://" + CONTACTS[6:] + ".nobody", timeout=0.2)
 except TimeoutError as error:
@@ -575,8 +578,9 @@ for wrong in (dict(name="left finger"), dict(name="finger", group="a/b"), dict(n
             lines = self.lines_said(bus, script)
         self.assertEqual(lines[0], "CURVE_CLASS_ELLIPSE 25")
         self.assertIn("no answer from", lines[1])
-        self.assertIn("no recognizer listens at", lines[2])
-        self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[3:]], ["name", "group", "tip_radius"])
+        self.assertEqual(lines[2], "waiting: 223")
+        self.assertIn("no recognizer listens at", lines[3])
+        self.assertEqual([line.partition("wrong: ")[2].split(":")[0] for line in lines[4:]], ["name", "group", "tip_radius"])
 
     def test_a_probe_may_bind_and_recognizers_come(self):
         script = """

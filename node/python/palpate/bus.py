@@ -315,13 +315,12 @@ class Planner(_Peer):
         self._attach()
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
-        """Returns the next new answer (SI units). Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
+        """Returns the next new answer (SI units); timeout 0: one that waits. Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
         the recognizer refuses our keys. Raises ValueError after close()."""
         self._check_open()
         deadline = time.monotonic() + timeout
         while True:
-            left = deadline - time.monotonic()
-            if left <= 0 or not self._wait(max(0.001, left)):
+            if not self._wait(max(0.0, deadline - time.monotonic())):
                 raise TimeoutError(f"no answer from {self.endpoint} within {timeout:g} s (palpate-node, a probe?)")
             frames = self._socket.recv_multipart()
             answer = recognition_pb2.Recognition.FromString(frames[1])

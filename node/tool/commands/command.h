@@ -26,11 +26,13 @@ void add_replay_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_watch_command(CLI::App& app, int& exit_code);
 
-/// For options: numbers above 0, or not below it; infinity and NaN are none. CLI11's own checks let
+/// For options: finite numbers above 0, or within bounds. CLI11's own checks let
 /// a NaN pass.
 CLI::Validator positive_number();
-CLI::Validator non_negative_number();
 CLI::Validator number_within(double lowest, double highest);
+
+/// For options: seconds to wait, at most eleven days: what is more is a mistake.
+inline CLI::Validator seconds_to_wait() { return number_within(0.0, 1e6); }
 
 /// For options: a class that a curve can be of; the error lists them.
 CLI::Validator curve_class_name();

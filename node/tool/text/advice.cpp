@@ -5,7 +5,6 @@
 
 #include "node/files/quantity.h"
 #include "node/tool/text/recognition_text.h"
-#include "node/wire/convert.h"
 
 namespace palpate {
 namespace {

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "node/wire/convert.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -37,12 +38,6 @@ void thin(LiveGroup& group) {
     group.run_of[{group.touched.probes[run.context.probe], run.context.patch}] = i;
     group.samples_kept += run.samples.size();
   }
-}
-
-MaterialSide side_of(v1::MaterialSide side) {
-  return side == v1::MATERIAL_SIDE_LEFT    ? MaterialSide::Left
-         : side == v1::MATERIAL_SIDE_RIGHT ? MaterialSide::Right
-                                           : MaterialSide::Unspecified;
 }
 
 /// False for a batch with invalid names or numbers: it is not ours to draw.
@@ -186,7 +181,9 @@ void LiveState::take(const v1::ContactBatch& batch, SteadyTime now) {
     const auto number = static_cast<std::uint32_t>(known - probes.begin());
     if (known == probes.end()) probes.push_back(probe);
     live.touched.runs.push_back(
-        {{number, batch.patch(), batch.tip_radius_m(), side_of(batch.material_side())}, {}});
+        {{number, batch.patch(), batch.tip_radius_m(),
+          from_wire(batch.material_side()).value_or(MaterialSide::Unspecified)},
+         {}});
   }
   live.last_touched = now;
   ContactRun& run = live.touched.runs[found->second];

@@ -189,7 +189,7 @@ tcp::endpoint endpoint_of(const HostPort& listen) {
 }  // namespace
 
 WebServer::WebServer(asio::io_context& io, const HostPort& listen, LiveState& state)
-    : acceptor_(io), timer_(io), state_(state), feed_(state) {
+    : acceptor_(io), ticks_(io), accept_again_(io), state_(state), feed_(state) {
   const tcp::endpoint endpoint = endpoint_of(listen);
   acceptor_.open(endpoint.protocol());
   acceptor_.set_option(asio::socket_base::reuse_address(true));
@@ -204,11 +204,9 @@ void WebServer::accept() {
     if (error == asio::error::operation_aborted) return;
     if (error) {
       // Out of descriptors: try again later, when connections have ended.
-      timer_.expires_after(kTick);
-      timer_.async_wait([this](beast::error_code stopped) {
-        if (stopped) return;
-        accept();
-        tick();
+      accept_again_.expires_after(kTick);
+      accept_again_.async_wait([this](beast::error_code stopped) {
+        if (!stopped) accept();
       });
       return;
     }
@@ -237,8 +235,8 @@ void WebServer::tick() {
   for (const auto& weak : sessions_) {
     if (const auto session = weak.lock()) session->tick(now);
   }
-  timer_.expires_after(kTick);
-  timer_.async_wait([this](beast::error_code stopped) {
+  ticks_.expires_after(kTick);
+  ticks_.async_wait([this](beast::error_code stopped) {
     if (!stopped) tick();
   });
 }

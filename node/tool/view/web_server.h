@@ -36,7 +36,8 @@ class WebServer {
   void tick();
 
   boost::asio::ip::tcp::acceptor acceptor_;
-  boost::asio::steady_timer timer_;
+  boost::asio::steady_timer ticks_;         ///< of the viewers
+  boost::asio::steady_timer accept_again_;  ///< its own: a tick would cancel the wait
   std::uint16_t port_ = 0;
   LiveState& state_;
   LiveFeed feed_;

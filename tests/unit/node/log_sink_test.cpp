@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <climits>
 #include <memory>
 #include <string>
 
@@ -36,6 +37,22 @@ TEST(LogSink, AFullPipeLosesLinesAndSaysSoLater) {
   EXPECT_EQ(std::string(read.data(), static_cast<std::size_t>(more)),
             fmt::format("({} lines of log lost: nobody read them)\nagain\n", lost));
   EXPECT_EQ(sink->lost(), 0U);
+  ::close(pipe[0]);
+  ::close(pipe[1]);
+}
+
+TEST(LogSink, ALineLongerThanAPipeTakesAtOnceIsCutAndStaysALine) {
+  std::array<int, 2> pipe{};
+  ASSERT_EQ(::pipe2(pipe.data(), O_CLOEXEC), 0);
+  spdlog::logger logger("test", std::make_shared<LogSink>(pipe[1]));
+  logger.set_pattern("%v");
+  logger.info(std::string(2 * PIPE_BUF, 'x'));
+  logger.info("next");
+  std::array<char, 4 * PIPE_BUF> read{};
+  const ssize_t got = ::read(pipe[0], read.data(), read.size());
+  ASSERT_GT(got, 0);
+  EXPECT_EQ(std::string(read.data(), static_cast<std::size_t>(got)),
+            std::string(PIPE_BUF - 1, 'x') + "\nnext\n");
   ::close(pipe[0]);
   ::close(pipe[1]);
 }

@@ -148,7 +148,7 @@ void add_check_command(CLI::App& app, int& exit_code) {
   command->add_flag("--insecure", check->place.insecure,
                     "Permit a bind beyond this machine without CURVE");
   command->add_option("--seconds", check->seconds, "How long to listen [s]")
-      ->check(positive_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command->callback([check, &exit_code] { exit_code = run(*check); });

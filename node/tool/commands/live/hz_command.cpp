@@ -69,7 +69,7 @@ void add_hz_command(CLI::App& app, int& exit_code) {
   add_connection_flags(*command, "--results", "The recognizer's results endpoint", hz->connection);
   command
       ->add_option("--seconds", hz->seconds, "Listen so long, then show it once; 0 = for ever [s]")
-      ->check(non_negative_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command->callback([hz, &exit_code] { exit_code = run(*hz); });

@@ -135,7 +135,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
   command->add_flag("--insecure", record->insecure,
                     "With --contacts: permit a bind beyond this machine without CURVE");
   command->add_option("--seconds", record->seconds, "Record so long; 0 = for ever [s]")
-      ->check(non_negative_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command->add_option("--count", record->count, "Record so many messages; 0 = any number")

@@ -115,12 +115,6 @@ class RecordedContacts {
   std::uint64_t malformed_ = 0;
 };
 
-v1::MaterialSide to_wire_side(MaterialSide side) {
-  return side == MaterialSide::Left    ? v1::MATERIAL_SIDE_LEFT
-         : side == MaterialSide::Right ? v1::MATERIAL_SIDE_RIGHT
-                                       : v1::MATERIAL_SIDE_UNSPECIFIED;
-}
-
 /// Batches of consecutive samples of one patch, due with their last one: by its stamp, or after so
 /// many sample periods where the file has no stamps.
 Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
@@ -148,7 +142,7 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
           batch.set_object(group.object);
           batch.set_patch(run.context.patch);
           batch.set_tip_radius_m(run.context.tip_radius_m);
-          batch.set_material_side(to_wire_side(run.context.material_side));
+          batch.set_material_side(to_wire(run.context.material_side));
         }
         const ContactSample& from = run.samples[i];
         v1::ContactSample& to = *messages.back().batch.add_samples();
@@ -328,7 +322,7 @@ void add_replay_command(CLI::App& app, int& exit_code) {
   command->add_flag("--fast", replay->fast, "As fast as possible");
   command->add_flag("--keep-objects", replay->keep_objects, "Keep the recorded object numbers");
   command->add_option("--wait", replay->wait_s, "Seconds to wait for a recognizer before giving up")
-      ->check(non_negative_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command

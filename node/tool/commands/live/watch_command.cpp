@@ -340,7 +340,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--interval", watch->interval_s,
                    "Text: least time between a group's lines, and between two tables [s]")
-      ->check(non_negative_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command->add_flag("--plot", watch->plot,
@@ -353,7 +353,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
       ->add_option("--timeout", watch->timeout_s,
                    "Fail where nothing (with --count: no recognition) is heard for so long; 0 = "
                    "wait for ever [s]")
-      ->check(non_negative_number())
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   command->callback([watch, &exit_code] { exit_code = run(*watch); });
