@@ -3,60 +3,31 @@
 
 #include <algorithm>
 #include <iostream>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "node/check/approach_check.h"
-#include "node/check/group_check.h"
-#include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
-#include "node/files/probe_file.h"
 #include "node/files/trimmed.h"
 #include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
-#include "node/tool/commands/file_flags.h"
-#include "node/tool/commands/offline/answer_notes.h"
-#include "node/tool/commands/offline/fit_input.h"
-#include "node/tool/commands/offline/given_answer.h"
-#include "node/tool/commands/offline/left_out.h"
-#include "node/tool/commands/offline/measured_group.h"
-#include "node/tool/commands/offline/object_answer.h"
+#include "node/tool/commands/offline/fit_answer.h"
+#include "node/tool/commands/offline/fit_files.h"
 #include "node/tool/commands/offline/placed_part.h"
-#include "node/tool/contact_groups.h"
 #include "node/tool/drawing/curve_export.h"
 #include "node/tool/drawing/svg/invariant_plot.h"
 #include "node/tool/drawing/svg/svg_plot.h"
-#include "node/tool/text/given_class_text.h"
-#include "node/tool/text/message_json.h"
-#include "node/tool/text/report.h"
-#include "node/wire/recognizer_options.h"
 
 namespace palpate {
 namespace {
-
-struct FitCommand {
-  std::vector<std::string> files;
-  std::string format;
-  std::string plot;
-  std::string invariants_plot;
-  std::string curve_file;
-  std::string part;
-  std::string given_class;
-  std::vector<std::string> probe_files;
-  std::vector<std::string> left_out;  ///< numbers, and ranges of them
-  FileFlags file;
-  std::vector<std::string> said;  ///< names of the recogniser's options that were given
-  RecognizerWords words;
-  RecognizerOptions recognizer;
-};
 
 /// For lists with commas: "circle, ellipse" is "circle,ellipse".
 std::string without_blanks_around(const std::string& word) { return std::string(trimmed(word)); }
 
 /// Flags for the recogniser's options, out of their one table.
-void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
+void add_recognizer_flags(CLI::App& command, FitRequest& fit) {
   for_each_recognizer_option(fit.words, fit.recognizer, [&](const OptionInfo& info, auto& field) {
     using Field = std::decay_t<decltype(field)>;
     if constexpr (is_switch<Field>) {
@@ -82,11 +53,6 @@ void add_recognizer_flags(CLI::App& command, FitCommand& fit) {
   });
 }
 
-bool noise_is_known(const FitInput& input, const RecognizerOptions& options,
-                    const v1::Recognition& answer) {
-  return input.noise_is_known || options.sigma_m > 0.0 || answer.probe_files_size() > 0;
-}
-
 /// PLOT.svg for the first group, PLOT-2.svg for the second, ...
 std::string plot_path(const std::string& path, std::size_t number) {
   if (number == 1) {
@@ -99,7 +65,7 @@ std::string plot_path(const std::string& path, std::size_t number) {
 }
 
 /// What is wrong if a file that is read would be written over, or nothing.
-std::string wrong_with_outputs(const FitCommand& fit, std::size_t groups) {
+std::string wrong_with_outputs(const FitRequest& fit, std::size_t groups) {
   std::vector<std::string> read = fit.files;
   read.insert(read.end(), fit.probe_files.begin(), fit.probe_files.end());
   read.push_back(fit.part);
@@ -117,7 +83,7 @@ bool is_among(const std::string& name, const std::vector<std::string>& names) {
 }
 
 /// What is wrong if a recogniser's option is given that does nothing for what is asked, or nothing.
-std::string wrong_with_options(const FitCommand& fit) {
+std::string wrong_with_options(const FitRequest& fit) {
   const std::vector<std::string> of_class{"sigma_m", "recognized_probability",
                                           "determined_fraction", "touched_from"};
   const std::vector<std::string> of_part{"sigma_m", "recognized_probability",
@@ -132,153 +98,76 @@ std::string wrong_with_options(const FitCommand& fit) {
   return "";
 }
 
-int run(FitCommand& fit) {
-  if (const std::string why = wrong_with_options(fit); !why.empty()) return complain(why, kUsage);
+/// What is wrong with what is asked for, or nothing.
+std::string wrong_with(FitRequest& fit) {
+  if (std::string why = wrong_with_options(fit); !why.empty()) return why;
   if (const std::string why = resolve(fit.words, fit.recognizer); !why.empty()) {
     // It begins with the option's name in the table, which is the node's too.
     const std::size_t name = why.find(':');
-    return complain(
-        flag_of(why.substr(0, name)) + why.substr(name) + "; palpate fit --help says more", kUsage);
+    return flag_of(why.substr(0, name)) + why.substr(name) + "; palpate fit --help says more";
   }
   if (!fit.part.empty() && !fit.probe_files.empty()) {
-    return complain(
-        "--probe: not with --part, which places the samples as they are: only the normals of a "
-        "curve that is recognised or given are used to take a probe's offsets off",
-        kUsage);
+    return "--probe: not with --part, which places the samples as they are: only the normals of a "
+           "curve that is recognised or given are used to take a probe's offsets off";
   }
-  // Nothing is answered before every file has been read: a bad one costs no half-done work.
-  std::vector<QualifiedProbe> probes;
-  for (const std::string& file : fit.probe_files) {
-    Result<QualifiedProbe> probe = read_probe(file);
-    if (!probe) return complain(probe.error, kUsage);
-    probes.push_back(*std::move(probe.value));
+  return "";
+}
+
+void print(const FitAnswer& told, std::size_t number, bool json, bool is_given) {
+  if (json) {
+    std::cout << with_notes(told.text, told.notes);
+    return;
   }
-  std::vector<FitInput> inputs;
-  bool bad = false;
-  for (const std::string& file : fit.files) {
-    Result<std::vector<FitInput>> read =
-        read_fit_input(file, options_of(fit.file), fit.recognizer.sigma_m);
-    if (!read) {
-      complain(read.error, kUsage);
-      bad = true;
-      continue;
-    }
-    for (FitInput& input : *read.value) {
-      for (const std::string& warning : input.warnings) {
-        complain("WARNING: " + input.group.file + ": " + warning, kDone);
-      }
-      std::string note = note_of_unused_sigma(input.group, fit.recognizer.sigma_m);
-      if (!note.empty()) {
-        complain(input.group.file + ": " + note, kDone);
-        // Placing says its notes here, not beside its answers.
-        if (fit.part.empty()) input.notes.push_back(std::move(note));
-      }
-      inputs.push_back(std::move(input));
-    }
+  std::cout << (number > 1 ? "\n" : "") << printable_path(told.measured.file) << ": " << told.text;
+  if (!is_given && !told.is_found) {
+    std::cout << "  advice       " << advice_text(told.answer, told.stated) << "\n";
   }
-  if (bad) return kUsage;
-  std::vector<std::size_t> left_out;
-  if (!fit.left_out.empty()) {
-    if (inputs.size() != 1) {
-      return complain(
-          "--leave-out: for one group and object only, here are " + std::to_string(inputs.size()),
-          kUsage);
-    }
-    Result<std::vector<std::size_t>> numbers = left_out_of(fit.left_out, inputs.front().group);
-    if (!numbers) return complain(numbers.error, kUsage);
-    left_out = *std::move(numbers.value);
+  for (const std::string& note : told.notes) std::cout << "  note         " << note << "\n";
+}
+
+/// Pictures and curves of an answer. kDone, or why they could not be written: the other answers are
+/// not lost with it.
+int write_files(const FitRequest& fit, const FitAnswer& told, std::size_t number) {
+  const ContactGroup& group = told.measured;
+  std::vector<std::string> failed;
+  if (!fit.invariants_plot.empty() && told.recognition) {
+    const std::string title =
+        group.file + ", " + group.name + ", object " + std::to_string(group.object);
+    failed.push_back(write_file(plot_path(fit.invariants_plot, number),
+                                invariant_plot(*told.recognition, title)));
   }
-  if (const std::string why = wrong_with_outputs(fit, inputs.size()); !why.empty()) {
+  if (!fit.plot.empty()) {
+    failed.push_back(write_file(plot_path(fit.plot, number),
+                                svg_plot(group, told.answer, told.spikes_m, told.stated)));
+  }
+  if (!fit.curve_file.empty()) {
+    failed.push_back(export_curve(group, told.answer, plot_path(fit.curve_file, number)));
+  }
+  int code = kDone;
+  for (const std::string& why : failed) {
+    if (!why.empty()) code = complain(why, kFailed);
+  }
+  return code;
+}
+
+int run(FitRequest& fit) {
+  if (const std::string why = wrong_with(fit); !why.empty()) return complain(why, kUsage);
+  std::optional<FitFiles> files = read_fit_files(fit);
+  if (!files) return kUsage;
+  if (const std::string why = wrong_with_outputs(fit, files->inputs.size()); !why.empty()) {
     return complain(why, kUsage);
   }
   const bool json = fit.format.empty() ? isatty(STDOUT_FILENO) == 0 : fit.format == "json";
   if (!fit.part.empty()) {
-    return place_part(fit.part, inputs, fit.recognizer, json);
+    return place_part(fit.part, files->inputs, fit.recognizer, json);
   }
   std::size_t number = 0;
-  int code = kDone;  // of what could not be written: the other answers are not lost with it
-  for (FitInput& input : inputs) {
-    // By the numbers that the samples have in the file, so before any is left out.
-    const std::optional<Finding> approach = judge_approaches(input.group, input.is_alone, left_out);
-    if (!left_out.empty() && fit.given_class.empty()) {
-      input.group = without_samples(input.group, left_out);
-      input.notes.push_back("left out: " + counted(left_out.size(), "sample") + " (--leave-out)");
-    }
-    const ContactGroup& group = input.group;
-    v1::Recognition answer;
-    std::string text;
-    std::vector<std::string> notes;
-    std::vector<Vec2> spikes;
-    if (fit.given_class.empty()) {
-      RecognizerOptions options = fit.recognizer;
-      options.memory = memory_for(group, options.memory, is_among("most_patches", fit.said));
-      Answered answered = recognise(input, options, probes, notes);
-      if (!fit.invariants_plot.empty()) {
-        const std::string picture =
-            invariant_plot(answered.recognition, group.file + ", " + group.name + ", object " +
-                                                     std::to_string(group.object));
-        const std::string path = plot_path(fit.invariants_plot, number + 1);
-        if (const std::string why = write_file(path, picture); !why.empty()) {
-          code = complain(why, kFailed);
-        }
-      }
-      answer = std::move(answered.wire);
-      spikes = std::move(answered.recognition.outliers_m);
-      text = json ? json_line(answer)
-                  : report_text(answer, noise_is_known(input, fit.recognizer, answer));
-    } else {
-      notes = input.notes;
-      const v1::GivenClassAnswer given =
-          fit_given({*curve_class_from_name(fit.given_class), left_out}, group, fit.recognizer,
-                    probes, notes);
-      text = json ? json_line(given) : given_class_text(given);
-      answer = given.recognition();
-    }
-    const ContactGroup measured = as_measured(group, probes, answer, fit.recognizer.touched_from);
-    const Stated stated =
-        stated_of(measured, fit.recognizer, noise_is_known(input, fit.recognizer, answer));
-    if (std::string note = note_of_tip_side(measured, answer, fit.recognizer.touched_from);
-        !note.empty()) {
-      complain(group.file + ": " + note, kDone);
-      notes.push_back(std::move(note));
-    }
-    // A probe file may know the tip.
-    if (std::string note = note_of_unused_side(group, fit.recognizer.touched_from);
-        probes.empty() && !note.empty()) {
-      complain(group.file + ": " + note, kDone);
-      notes.push_back(std::move(note));
-    }
-    // A class that is given is fitted to all samples: none is set aside as a spike.
-    const bool is_found = answer.status() == v1::RECOGNITION_STATUS_RECOGNIZED &&
-                          answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
-    if (approach && (!is_found || !fit.given_class.empty())) {
-      std::string note = "WARNING: " + sentence_of(*approach);
-      complain(group.file + ": " + note, kDone);
-      notes.push_back(std::move(note));
-    }
-    if (json) {
-      std::cout << with_notes(text, notes);
-    } else {
-      std::cout << (number > 0 ? "\n" : "") << printable_path(group.file) << ": " << text;
-      if (fit.given_class.empty() && !is_found) {
-        std::cout << "  advice       " << advice_text(answer, stated) << "\n";
-      }
-      for (const std::string& note : notes) std::cout << "  note         " << note << "\n";
-    }
+  int code = kDone;
+  for (FitInput& input : files->inputs) {
+    const FitAnswer told = fit_answer(fit, std::move(input), files->probes, files->left_out, json);
     ++number;
-    if (!fit.plot.empty()) {
-      const std::string path = plot_path(fit.plot, number);
-      if (const std::string why = write_file(path, svg_plot(measured, answer, spikes, stated));
-          !why.empty()) {
-        code = complain(why, kFailed);
-      }
-    }
-    if (!fit.curve_file.empty()) {
-      const std::string path = plot_path(fit.curve_file, number);
-      if (const std::string why = export_curve(measured, answer, path); !why.empty()) {
-        code = complain(why, kFailed);
-      }
-    }
+    print(told, number, json, !fit.given_class.empty());
+    code = std::max(code, write_files(fit, told, number));
   }
   std::cout.flush();
   return std::cout ? code : complain("standard output: cannot be written", kFailed);
@@ -287,7 +176,7 @@ int run(FitCommand& fit) {
 }  // namespace
 
 void add_fit_command(CLI::App& app, int& exit_code) {
-  auto fit = std::make_shared<FitCommand>();
+  auto fit = std::make_shared<FitRequest>();
   CLI::App* command = app.add_subcommand(
       "fit",
       "Recognise the objects of CSV files, one answer a group and object.\n"
