@@ -51,6 +51,9 @@ struct PointDetail {
   Vec2 normal = Vec2::Zero();
   double inverse_normal_sigma = 0.0;
   double contacts = 1.0;  ///< that the point stands for
+  /// Direction of the smooth model's path, as far as noise does not turn it; zero where it does.
+  Vec2 travel = Vec2::Zero();
+  double off_path = 0.0;  ///< distance from that path, on the left of travel
 
   bool says_more() const { return covariance.x() > 0.0 || inverse_normal_sigma > 0.0; }
 };

@@ -9,9 +9,13 @@ namespace palpate {
 /// `rounding`: no noise is smaller, normalised.
 void weigh_across(const Vec2& n, double rounding, PointDetail* detail, FitPoint* point);
 
-/// Weighs points that bring a covariance by what of it lies across the smooth model's path. Those
-/// of which no polynomial tells the direction keep their mean noise. Whether any was weighed.
-/// O(points).
-bool weigh_across_path(const SmoothModel& smooth, FitData* data);
+/// The smooth model of points some of which bring covariances. At first all of their noise is taken
+/// for what lies across: by less, a stroke that lies across the long axis would be cut for what its
+/// noise leaves. Then they are weighed by what of it lies across the path, and moved along the path
+/// by what their distance from it tells of the noise there: what is left along has nothing to do
+/// with what lies across (core/README.md, "Refinement and the bound"). And all is smoothed again,
+/// until the path stays. Points of which no polynomial tells the direction keep their place and
+/// mean noise. `source`: fit_smooth_model's. O(points).
+SmoothModel smooth_across(bool sigma_known, const SectionSource& source, FitData* data);
 
 }  // namespace palpate

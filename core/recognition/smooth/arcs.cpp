@@ -23,6 +23,11 @@ bool set_noise(FitData* data, SmoothModel* smooth) {
   return estimate <= rounding;
 }
 
+bool has_covariances(const FitData& data) {
+  return std::any_of(data.details.begin(), data.details.end(),
+                     [](const PointDetail& detail) { return detail.covariance.x() > 0.0; });
+}
+
 /// Takes what rounding leaves for the noise.
 void take_rounding(FitData* data, Arcs* arcs) {
   scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);
@@ -59,10 +64,9 @@ Arcs smooth_arcs(FitData data, const SectionSource& source) {
   if (!sigma_known) {
     weigh_strokes(&data);
   }
-  arcs.smooth = fit_smooth_model(&data, sigma_known, StatedNoise::MayBeTooLow, source);
-  if (!data.details.empty() && weigh_across_path(arcs.smooth, &data)) {
-    arcs.smooth = fit_smooth_model(&data, sigma_known);
-  }
+  arcs.smooth = has_covariances(data)
+                    ? smooth_across(sigma_known, source, &data)
+                    : fit_smooth_model(&data, sigma_known, StatedNoise::MayBeTooLow, source);
   arcs.sigma_known = sigma_known || set_noise(&data, &arcs.smooth);
   arcs.may_not_follow = sigma_known || !arcs.sigma_known;
   if (!sigma_known && rms_sigma(data) < data.reading_noise) {

@@ -12,6 +12,7 @@
 #include "core/numerics/probability/chi_square.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/smooth/patch_sections.h"
+#include "core/recognition/smooth/path_of_details.h"
 #include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/smooth/turning_sections.h"
 #include "core/recognition/smooth/variance_ratio.h"
@@ -38,6 +39,9 @@ void keep_points(FitData* data, const PatchSpan& patch, const PatchSpan& section
     const double length = chord.norm();
     if (patch.size() > 1) {
       data->points[i].tangent = length > 0.0 ? Vec2(chord / length) : Vec2(0.0, 0.0);
+    }
+    if (!data->details.empty()) {
+      data->details[i].travel.setZero();
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(model->reduced.points.size());
     model->reduced.points.push_back(data->points[i]);
@@ -99,6 +103,9 @@ void add_smoothed(FitData* data, const SectionFit& fit, SmoothModel* model,
       nearest = std::abs(rule[k].x - x) < std::abs(rule[nearest].x - x) ? k : nearest;
     }
     model->nearest_reduced[i] = static_cast<std::uint32_t>(begin + nearest);
+  }
+  if (!data->details.empty()) {
+    tell_path(fit, data);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/turning_points.h"
+#include "core/recognition/smooth/longest_variance.h"
 
 namespace palpate {
 namespace {
@@ -81,8 +82,7 @@ double typical_variance(const FitData& data, const PatchSpan& patch,
   const double typical = most > kMuchMore * across ? most : across;
   double least_stated = std::numeric_limits<double>::infinity();
   for (std::size_t i = patch.begin; sigma_known && i < patch.end; ++i) {
-    const double inverse = data.points[i].inverse_sigma;
-    least_stated = std::min(least_stated, 1.0 / (inverse * inverse));
+    least_stated = std::min(least_stated, longest_variance(data, i));
   }
   return sigma_known ? std::max(typical, std::min(least_stated, kLargestNoise * kLargestNoise))
                      : typical;

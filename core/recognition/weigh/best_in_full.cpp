@@ -124,6 +124,9 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   FitData full = w.data;
   for (std::size_t i = 0; i < full.details.size(); ++i) {
     full.details[i].covariance = data.details[i].covariance;
+    // As measured: noise along a stroke makes no curve lean that all strokes hold, and where they
+    // were moved to is known only as well as each path (smooth/across_noise.h).
+    full.points[i].position = data.points[i].position;
   }
   if (!w.seen.correlated && !(w.seen.correlation_length > 0.0)) {
     give_normals(&full);

@@ -10,8 +10,9 @@
 namespace palpate {
 namespace {
 
-/// The data with the noise that lies across the best class's curve, as every class is then judged
-/// by; nullopt where the path told it of all points, or no class is placed on all points.
+/// The data with the noise that lies across the best class's curve where no path told it, as every
+/// class is then judged by; nullopt where the path told it of all points, or no class is placed on
+/// all points.
 std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
   const bool any_left = std::any_of(w.data.details.begin(), w.data.details.end(),
                                     [](const PointDetail& d) { return d.covariance.x() > 0.0; });
@@ -21,8 +22,10 @@ std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
   FitData weighed = data;
   const double rounding = rounding_level(data);
   for (std::size_t i = 0; i < data.details.size(); ++i) {
-    const Vec2 normal = data.frame.rotate_back(w.canonical[w.best]->points[i].normal);
-    weigh_across(normal, rounding, &weighed.details[i], &weighed.points[i]);
+    if (w.data.details[i].covariance.x() > 0.0) {
+      const Vec2 normal = data.frame.rotate_back(w.canonical[w.best]->points[i].normal);
+      weigh_across(normal, rounding, &weighed.details[i], &weighed.points[i]);
+    }
   }
   return weighed;
 }

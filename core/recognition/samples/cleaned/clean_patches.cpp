@@ -4,6 +4,7 @@
 #include <span>
 #include <utility>
 
+#include "core/recognition/samples/cleaned/even_noise.h"
 #include "core/recognition/samples/cleaned/passes.h"
 #include "core/recognition/samples/cleaned/repeated_touches.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
@@ -108,16 +109,19 @@ Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cus
 void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
                   std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
                   WorkBudget& work) {
-  Turns turns = turns_of(patch.samples, default_sigma_m);
-  std::vector<bool> is_spike = spikes_between(turns, patch.samples, false_alarm, work);
+  const std::vector<StoredSample> even =
+      patch.details.empty() ? std::vector<StoredSample>{} : with_even_noise(patch);
+  const std::span<const StoredSample> samples = even.empty() ? patch.samples : even;
+  Turns turns = turns_of(samples, default_sigma_m);
+  std::vector<bool> is_spike = spikes_between(turns, samples, false_alarm, work);
   if ((has_any(is_spike) || !turns.cusps.empty()) &&
-      turns_without(is_spike, turns.cusps, patch.samples, default_sigma_m) != turns) {
+      turns_without(is_spike, turns.cusps, samples, default_sigma_m) != turns) {
     if (turns != Turns{}) {
-      is_spike = spikes_between({}, patch.samples, false_alarm, work);
+      is_spike = spikes_between({}, samples, false_alarm, work);
     }
-    turns = turns_without(is_spike, {}, patch.samples, default_sigma_m);
+    turns = turns_without(is_spike, {}, samples, default_sigma_m);
     if (turns != Turns{}) {
-      is_spike = spikes_between(turns, patch.samples, false_alarm, work);
+      is_spike = spikes_between(turns, samples, false_alarm, work);
     }
   }
   *passes = passes_of(patch, turns.returns);
