@@ -48,25 +48,26 @@ std::vector<double> distances_from(const PolynomialFit& curve, std::span<const F
 
 /// The distance of a point, and its foot: a tip's on the branch of the curve's foot of that number.
 double distance_from(const ImplicitFit& curve, std::size_t number, const FitPoint& point,
-                     Vec2* foot) {
-  return point.offset > 0.0
-             ? signed_distance_of_tip(curve.feet[number], curve.coefficients, point.position, foot)
-             : signed_distance(curve.coefficients, point.position, foot);
+                     Vec2* foot, WorkBudget& work) {
+  return point.offset > 0.0 ? signed_distance_of_tip(curve.feet[number], curve.coefficients,
+                                                     point.position, foot, work)
+                            : signed_distance(curve.coefficients, point.position, foot);
 }
 
-std::vector<double> distances_from(const ImplicitFit& curve, std::span<const FitPoint> points) {
+std::vector<double> distances_from(const ImplicitFit& curve, std::span<const FitPoint> points,
+                                   WorkBudget& work) {
   std::vector<double> distances;
   distances.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vec2 foot;
-    distances.push_back(distance_from(curve, i, points[i], &foot));
+    distances.push_back(distance_from(curve, i, points[i], &foot, work));
   }
   return distances;
 }
 
 /// What the measured normals leave of chi-square.
 double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
-                          std::span<const FitPoint> points) {
+                          std::span<const FitPoint> points, WorkBudget& work) {
   double squares = 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!has_normal(points[i])) {
@@ -79,7 +80,7 @@ double squares_of_normals(const ClassFit& fit, const SmoothModel& smooth,
       residual = normal_residual(fit.polynomial->coefficients, foot, points[i]);
     } else {
       Vec2 foot;
-      distance_from(*fit.implicit, smooth.nearest_reduced[i], points[i], &foot);
+      distance_from(*fit.implicit, smooth.nearest_reduced[i], points[i], &foot, work);
       residual = normal_residual(fit.implicit->coefficients, foot, points[i]);
     }
     squares += residual * residual;
@@ -150,7 +151,7 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   }
   if (start.implicit && tips) {
     carry_to_all(smooth, &*start.implicit);
-    start.implicit->side = side_of_tips(distances_from(*start.implicit, points), points);
+    start.implicit->side = side_of_tips(distances_from(*start.implicit, points, work), points);
   }
   for (auto* curve : {&start.polynomial, &start.rival}) {
     if (*curve) {
@@ -263,11 +264,11 @@ double chi2_on_all(const ClassFit& fit, const SmoothModel& smooth, const FitData
     if (has_tips(points)) {
       carry_to_all(smooth, &curve);
     }
-    distances = distances_from(curve, points);
+    distances = distances_from(curve, points, work);
   }
   const int side = side_of_tips(distances, points);
   double chi2 =
-      residual_count(data) > points.size() ? squares_of_normals(fit, smooth, points) : 0.0;
+      residual_count(data) > points.size() ? squares_of_normals(fit, smooth, points, work) : 0.0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double residual = (distances[i] - side * points[i].offset) * points[i].inverse_sigma;
     chi2 += residual * residual;

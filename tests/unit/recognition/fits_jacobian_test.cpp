@@ -38,8 +38,9 @@ TEST(ImplicitFit, ATipAboutTheCentreOfAHyperbolaKeepsItsBranch) {
     const Vec2 centre = touched - radius * conic_gradient(q, touched).normalized();
     const double nearby = t + test::uniform(rng, -0.1, 0.1);
     Vec2 foot;
-    const double distance =
-        signed_distance_of_tip({a * std::cosh(nearby), b * std::sinh(nearby)}, q, centre, &foot);
+    WorkBudget work;
+    const double distance = signed_distance_of_tip({a * std::cosh(nearby), b * std::sinh(nearby)},
+                                                   q, centre, &foot, work);
     // Newton's method ends where a step is less than 1e-12 or 1e-4 of the root of the distance.
     EXPECT_NEAR(distance, -radius, 1e-7 * radius) << a << ' ' << b << ' ' << t;
     EXPECT_LT((foot - touched).norm(), 1e-4 * radius) << a << ' ' << b << ' ' << t;
@@ -62,8 +63,9 @@ TEST(ImplicitFit, ATipInABoreTouchesTheWallBesideItsNeighbour) {
     const Vec2 centre = touched - radius * conic_gradient(q, touched).normalized();
     const double nearby = t + test::uniform(rng, -0.01, 0.01);
     Vec2 foot;
-    const double distance =
-        signed_distance_of_tip({a * std::cos(nearby), b * std::sin(nearby)}, q, centre, &foot);
+    WorkBudget work;
+    const double distance = signed_distance_of_tip({a * std::cos(nearby), b * std::sin(nearby)}, q,
+                                                   centre, &foot, work);
     EXPECT_NEAR(distance, -radius, 1e-7 * radius) << a << ' ' << b << ' ' << t;
     EXPECT_LT((foot - touched).norm(), 1e-4 * radius) << a << ' ' << b << ' ' << t;
   }

@@ -98,13 +98,14 @@ class SphereResiduals {
   using Step = Eigen::Matrix<double, K - 1, 1>;
 
   SphereResiduals(std::span<const FitPoint> points, const ModelBasis<K>& basis, const Start& start,
-                  int side, std::span<const Vec2> near)
+                  int side, std::span<const Vec2> near, WorkBudget& work)
       : points_(points),
         basis_(basis),
         start_(start.normalized()),
         side_(side),
         near_(near.begin(), near.end()),
-        feet_(points.size()) {
+        feet_(points.size()),
+        work_(work) {
     trial_.setConstant(std::numeric_limits<double>::quiet_NaN());
     tangent_ = tangent_space<K>(start_);
     if (count_normals(points) > 0) {
@@ -193,7 +194,7 @@ class SphereResiduals {
       Foot& foot = feet_[i];
       const Vec2& point = points_[i].position;
       foot.distance = !near_.empty() && points_[i].offset > 0.0
-                          ? signed_distance_of_tip(near_[i], q, point, &foot.position)
+                          ? signed_distance_of_tip(near_[i], q, point, &foot.position, work_)
                           : signed_distance(q, point, &foot.position);
     }
     trial_ = step;
@@ -219,6 +220,7 @@ class SphereResiduals {
   mutable std::vector<Vec2> near_;  ///< feet of tips at the last accepted step; empty: not known
   mutable std::vector<Foot> feet_;  ///< at trial_
   mutable Step trial_;
+  WorkBudget& work_;
 };
 
 template <int K>
@@ -226,7 +228,7 @@ ImplicitFit refine(std::span<const FitPoint> points, const ModelBasis<K>& basis,
                    const ConicCoefficients& start, int side, const RefineEffort& effort,
                    WorkBudget& work, std::span<const Vec2> near) {
   const Eigen::Matrix<double, K, 1> start_in_model = basis.transpose() * start;
-  const SphereResiduals<K> residuals(points, basis, start_in_model, side, near);
+  const SphereResiduals<K> residuals(points, basis, start_in_model, side, near, work);
   Eigen::Matrix<double, K - 1, 1> step = Eigen::Matrix<double, K - 1, 1>::Zero();
   const auto summary =
       minimise_residuals(residuals,
@@ -260,21 +262,26 @@ constexpr FootSteps kFromNear{5};
 /// is as flat.
 constexpr FootSteps kOfTip{20, 0.01, true};
 
-/// Seeks the foot of a point from `foot`. Returns whether it is found.
-bool follow_foot(const ConicCoefficients& q, const Vec2& point, const FootSteps& steps,
-                 Vec2* foot) {
+struct Followed {
+  bool found = false;
+  int steps = 0;
+};
+
+/// Seeks the foot of a point from `foot`.
+Followed follow_foot(const ConicCoefficients& q, const Vec2& point, const FootSteps& steps,
+                     Vec2* foot) {
   // Newton's method on {Q(f) = 0, (point - f) x grad Q(f) = 0}.
   // After a last step s the foot point is off by about s^2 in normalised extents: by so much at
   // most, absolute and of the distance.
   constexpr double kAbsoluteError = 1e-12;
   constexpr double kRelativeError = 1e-8;
   Vec2& f = *foot;
-  for (int iteration = 0; iteration < steps.most; ++iteration) {
+  for (int taken = 0; taken < steps.most; ++taken) {
     const double v = value(q, f);
     const Vec2 g = conic_gradient(q, f);
     const double g2 = g.squaredNorm();
     if (g2 <= 0.0) {
-      return false;
+      return {false, taken};
     }
     const Vec2 away = point - f;
     const double c = away.x() * g.y() - away.y() * g.x();
@@ -293,10 +300,10 @@ bool follow_foot(const ConicCoefficients& q, const Vec2& point, const FootSteps&
     }
     f += step;
     if (step.squaredNorm() < std::min(kAbsoluteError, kRelativeError * away.norm())) {
-      return true;
+      return {true, taken + 1};
     }
   }
-  return false;
+  return {false, steps.most};
 }
 
 /// Newton's first step from the point itself: its first-order (Sampson) foot.
@@ -332,19 +339,24 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
 }
 
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
-                              Vec2* foot) {
+                              Vec2* foot, WorkBudget& work) {
+  // A row's price is that of a point near the curve, and so much of it is a step.
+  constexpr int kStepsOfRow = 8;
   // About the centre of a conic, where a tip may be that is as large as a bore's b or a hyperbola's
   // a, the polynomial is flat, the first-order foot anywhere, and the foot that it leads to any of
   // four.
   *foot = near;
-  const bool found = follow_foot(q, point, kOfTip, foot);
-  if (!found || are_on_two_branches(q, *foot, near)) {
+  const Followed from_near = follow_foot(q, point, kOfTip, foot);
+  int steps = from_near.steps;
+  if (!from_near.found || are_on_two_branches(q, *foot, near)) {
     Vec2 other = first_order_foot(q, point);
-    const bool leads = follow_foot(q, point, kFromNear, &other);
-    if (leads && (other - near).squaredNorm() < (*foot - near).squaredNorm()) {
+    const Followed leads = follow_foot(q, point, kFromNear, &other);
+    steps += leads.steps;
+    if (leads.found && (other - near).squaredNorm() < (*foot - near).squaredNorm()) {
       *foot = other;
     }
   }
+  work.spend(WorkKind::ConicRow, static_cast<std::size_t>(steps / kStepsOfRow));
   return signed_distance_from(*foot, q, point);
 }
 

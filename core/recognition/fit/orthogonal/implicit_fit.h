@@ -43,9 +43,11 @@ ImplicitFit placed_on(std::span<const FitPoint> points, ImplicitFit fit);
 double signed_distance(const ConicCoefficients& coefficients, const Vec2& point, Vec2* foot);
 
 /// The same of a tip's centre, which may be far from the conic: with the foot that is reached from
-/// `near`, that of a neighbour. It is on the same branch of a hyperbola.
+/// `near`, that of a neighbour. It is on the same branch of a hyperbola. Where the tip is about as
+/// large as the curve's radius, it takes several times the steps of a point near the curve: `work`
+/// counts them.
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& coefficients,
-                              const Vec2& point, Vec2* foot);
+                              const Vec2& point, Vec2* foot, WorkBudget& work);
 
 /// The same for a known foot point.
 double signed_distance_from(const Vec2& foot, const ConicCoefficients& coefficients,
