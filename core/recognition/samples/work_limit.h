@@ -10,10 +10,10 @@
 namespace palpate {
 
 /// All that an answer may take, over the work of a clean ellipse. A planner can wait for eight, by
-/// the clock; an answer that is cut has spent six to six and a half of these, and takes a quarter
-/// longer than its count says at most (`bench_worst_case`). Strokes that go there and back six
-/// times, with a noise that nobody states, take up to six, and are recognised (habits_test); half a
-/// one is for the covariance (recognizer.cpp).
+/// the clock. An answer that is cut has spent six of these, and takes up to half longer than its
+/// count says (`bench_worst_case`). Strokes that go there and back six times, with a noise that
+/// nobody states, take up to six, and are recognised (habits_test); half a one is for the
+/// covariance (recognizer.cpp).
 inline constexpr double kMostWork = 7.5;
 
 /// Work that a clean ellipse of so many samples in so many patches takes, at most.
