@@ -1,6 +1,6 @@
 #include "core/recognition/recognizer.h"
 
-#include <cmath>
+#include <algorithm>
 #include <optional>
 #include <utility>
 #include <vector>

@@ -40,6 +40,11 @@ std::vector<bool> moved_along(const FitData& as_told, FitData* data) {
 
 }  // namespace
 
+bool has_covariances(const FitData& data) {
+  return std::any_of(data.details.begin(), data.details.end(),
+                     [](const PointDetail& detail) { return detail.covariance.x() > 0.0; });
+}
+
 void weigh_across(const Vec2& n, double rounding, PointDetail* detail, FitPoint* point) {
   if (detail->covariance.x() > 0.0) {
     const double least = rounding * rounding;

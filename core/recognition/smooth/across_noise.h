@@ -5,6 +5,9 @@
 
 namespace palpate {
 
+/// Whether any point brings a covariance, or has one left that is not used.
+bool has_covariances(const FitData& data);
+
 /// Weighs a point that brings a covariance C by n . C n, `n` the curve's unit normal there.
 /// `rounding`: no noise is smaller, normalised.
 void weigh_across(const Vec2& n, double rounding, PointDetail* detail, FitPoint* point);

@@ -23,11 +23,6 @@ bool set_noise(FitData* data, SmoothModel* smooth) {
   return estimate <= rounding;
 }
 
-bool has_covariances(const FitData& data) {
-  return std::any_of(data.details.begin(), data.details.end(),
-                     [](const PointDetail& detail) { return detail.covariance.x() > 0.0; });
-}
-
 /// Takes what rounding leaves for the noise.
 void take_rounding(FitData* data, Arcs* arcs) {
   scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);

@@ -1,6 +1,5 @@
 #include "core/recognition/weigh/weigh_in_full.h"
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -14,9 +13,7 @@ namespace {
 /// class is then judged by; nullopt where the path told it of all points, or no class is placed on
 /// all points.
 std::optional<FitData> weighed_across(const Weighing& w, const FitData& data) {
-  const bool any_left = std::any_of(w.data.details.begin(), w.data.details.end(),
-                                    [](const PointDetail& d) { return d.covariance.x() > 0.0; });
-  if (!any_left || !w.canonical[w.best] || !w.fits[w.best]->on_all) {
+  if (!has_covariances(w.data) || !w.canonical[w.best] || !w.fits[w.best]->on_all) {
     return std::nullopt;
   }
   FitData weighed = data;

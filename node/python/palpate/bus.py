@@ -315,8 +315,8 @@ class Planner(_Peer):
         self._attach()
 
     def receive(self, timeout: float = 10.0) -> recognition_pb2.Recognition:
-        """Returns the next new answer (SI units); timeout 0: one that waits. Raises TimeoutError after `timeout` seconds and ConnectionRefusedError if
-        the recognizer refuses our keys. Raises ValueError after close()."""
+        """Returns the next new answer (SI units); timeout 0: one that waits. Raises TimeoutError after `timeout` seconds and
+        ConnectionRefusedError if the recognizer refuses our keys. Raises ValueError after close()."""
         self._check_open()
         deadline = time.monotonic() + timeout
         while True:

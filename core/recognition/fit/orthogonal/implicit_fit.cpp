@@ -340,7 +340,7 @@ double signed_distance(const ConicCoefficients& q, const Vec2& point, Vec2* foot
 
 double signed_distance_of_tip(const Vec2& near, const ConicCoefficients& q, const Vec2& point,
                               Vec2* foot, WorkBudget& work) {
-  // A row's price is that of a point near the curve, and so much of it is a step.
+  // A row's price is that of a point near the curve: so many steps cost as much.
   constexpr int kStepsOfRow = 8;
   // About the centre of a conic, where a tip may be that is as large as a bore's b or a hyperbola's
   // a, the polynomial is flat, the first-order foot anywhere, and the foot that it leads to any of

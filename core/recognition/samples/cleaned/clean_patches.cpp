@@ -109,9 +109,8 @@ Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cus
 void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
                   std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
                   WorkBudget& work) {
-  const std::vector<StoredSample> even =
-      patch.details.empty() ? std::vector<StoredSample>{} : with_even_noise(patch);
-  const std::span<const StoredSample> samples = even.empty() ? patch.samples : even;
+  const auto even = with_even_noise(patch);
+  const std::span<const StoredSample> samples = even ? *even : patch.samples;
   Turns turns = turns_of(samples, default_sigma_m);
   std::vector<bool> is_spike = spikes_between(turns, samples, false_alarm, work);
   if ((has_any(is_spike) || !turns.cusps.empty()) &&

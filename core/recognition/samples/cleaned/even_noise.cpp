@@ -2,7 +2,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <optional>
 
 namespace palpate {
 namespace {
@@ -27,16 +26,16 @@ std::optional<Eigen::Matrix2d> mean_covariance(const StoredPatch& patch) {
 
 }  // namespace
 
-std::vector<StoredSample> with_even_noise(const StoredPatch& patch) {
-  std::vector<StoredSample> samples = patch.samples;
+std::optional<std::vector<StoredSample>> with_even_noise(const StoredPatch& patch) {
   const auto covariance = mean_covariance(patch);
   if (!covariance) {
-    return samples;
+    return std::nullopt;
   }
   // To the mean noise, which is what the samples have for their sigma_m.
   const Eigen::Matrix2d stretch =
       std::sqrt(0.5 * covariance->trace()) *
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(*covariance).operatorInverseSqrt();
+  std::vector<StoredSample> samples = patch.samples;
   const Vec2 first_m = samples.front().position_m;
   for (StoredSample& sample : samples) {
     sample.position_m = first_m + stretch * (sample.position_m - first_m);
