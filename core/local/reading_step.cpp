@@ -9,12 +9,12 @@
 namespace palpate {
 namespace {
 
-constexpr double kShare = 0.9;
+constexpr double kShare = 0.9;  // of all coordinates; the others may be means
 
 /// Whether a coordinate, counted from another, is a multiple of the step, but for the rounding of
 /// all, which single precision may have held.
 bool is_multiple(double coordinate_m, double from_m, double step_m) {
-  constexpr double kOfStep = 1e-6;
+  constexpr double kOfStep = 1e-6;  // a decimal number's step in double precision, many times over
   constexpr double kOfSingle = 0.5 * std::numeric_limits<float>::epsilon();
   // Of the step: nine tenths of n coordinates that are no multiples come as near once in 50^n.
   constexpr double kMostOfStep = 1e-2;
@@ -39,8 +39,8 @@ bool are_multiples(std::span<const Vec2> samples, const Vec2& from, double step_
 }  // namespace
 
 double reading_step_m(std::span<const Vec2> samples, double least_noise_m) {
-  constexpr double kMostOfExtent = 0.01;
-  constexpr double kLeast_m = 1e-9;
+  constexpr double kMostOfExtent = 0.01;  // coarser ones are shapes of a few digits
+  constexpr double kLeast_m = 1e-9;       // no probe tells less
   constexpr std::array kDigits = {5.0, 2.54, 2.5, 2.0, 1.25, 1.0};
   Eigen::AlignedBox2d box;
   for (const Vec2& sample : samples) {

@@ -219,7 +219,7 @@ void part_run(const JointTest& test, std::size_t begin, std::size_t end,
 /// the run; if these were misplaced, further joints were found next to them. A joint that the test
 /// does not confirm is removed.
 void settle(const JointTest& test, std::size_t count, std::vector<SegmentJoint>* joints) {
-  constexpr int kPasses = 2;
+  constexpr int kPasses = 2;  // the second tests between neighbours that the first has placed
   for (int pass = 0; pass < kPasses && joints->size() > 1; ++pass) {
     for (std::size_t j = 0; j < joints->size();) {
       const std::size_t begin = j > 0 ? (*joints)[j - 1].latest : 0;

@@ -1,12 +1,10 @@
 #include "core/qualification/probe_correction.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "core/numerics/matrices/symmetric_eigen.h"
-#include "core/recognition/verdict/determined.h"
 
 namespace palpate {
 namespace {
@@ -65,29 +63,6 @@ Touch touch_of(const ProbedPatch& patch, const Curve& curve, const Pose2& pose, 
   return touch;
 }
 
-AddResult add_all(std::span<const ProbedPatch> patches, Recognizer& recognizer) {
-  AddResult sum;
-  for (const ProbedPatch& patch : patches) {
-    sum += recognizer.add(patch.context, patch.samples, patch.details);
-  }
-  return sum;
-}
-
-/// The curve of the most probable class; nullopt if there is none.
-std::optional<Curve> curve_of(const Recognition& answer) {
-  return answer.hypotheses.empty() || answer.hypotheses.front().at_limit
-             ? std::nullopt
-             : make_curve(answer.shape.curve_class, answer.shape.values);
-}
-
-double half_extent(std::span<const ProbedPatch> patches) {
-  Eigen::AlignedBox2d box;
-  for (const ProbedPatch& patch : patches) {
-    for (const ContactSample& sample : patch.samples) box.extend(sample.position_m);
-  }
-  return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
-}
-
 /// Adds to a contact what the offset that was taken off is uncertain by in another set-up: an error
 /// d of it along the left normal moves the surface by d, turns it by d' and bends it by kappa^2 d +
 /// d'', by arc length. Of the normal's direction phi, d' = kappa d_phi and d'' = kappa^2 d_phiphi +
@@ -109,23 +84,6 @@ void add_what_offset_leaves(const ProbedPatch& patch, const Curve& curve, const 
                              estimate->kappa_s * slope);
   by_offset.row(3).setZero();
   estimate->covariance += by_offset * covariance_elsewhere(*patch.probe) * by_offset.transpose();
-}
-
-/// The same for all contacts of patches that an offset was taken off.
-void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
-                            const Pose2& pose, TouchedFrom touched_from,
-                            std::vector<LocalizedContact>* contacts) {
-  for (const ProbedPatch& patch : patches) {
-    const int material =
-        patch.probe == nullptr ? 0 : material_sign(curve, pose, patch, touched_from);
-    if (material == 0) continue;
-    const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
-    for (LocalizedContact& contact : *contacts) {
-      if (contact.probe == patch.context.probe && contact.patch == patch.context.patch) {
-        add_what_offset_leaves(patch, curve, pose, material, travel, &contact.estimate);
-      }
-    }
-  }
 }
 
 }  // namespace
@@ -249,124 +207,20 @@ double inflation_of_probes(std::span<const ProbedPatch> patches) {
   return count > 0 ? 1.0 + sum / static_cast<double>(count) : 1.0;
 }
 
-ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches,
-                                   RecognizerOptions options) {
-  // A patch with a file has a noise, so that others decide whether one is not stated.
-  if (std::all_of(patches.begin(), patches.end(),
-                  [](const ProbedPatch& patch) { return patch.probe != nullptr; })) {
-    options.unqualified_probe = false;
-  }
-  std::vector<ProbedPatch> raw;
-  double coherent = 0.0;
-  double lobes = 0.0;  // mean square
+void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
+                            const Pose2& pose, TouchedFrom touched_from,
+                            std::vector<LocalizedContact>* contacts) {
   for (const ProbedPatch& patch : patches) {
-    raw.push_back(as_qualified(patch));
-    if (patch.probe == nullptr) continue;
-    options.has_probe_file = true;
-    coherent = std::max(coherent, mean_square(patch.probe->deviation_m) +
-                                      mean_variance_of_lobes(patch.probe->offset));
-    lobes = std::max(lobes, mean_square_of_lobes(patch.probe->offset));
-  }
-  RecognizerOptions cautious = options;
-  cautious.form_deviation_m =
-      std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent);
-  // Before they are taken off, lobes are a deviation like any other: else no class fits.
-  RecognizerOptions with_lobes = options;
-  with_lobes.form_deviation_m =
-      std::sqrt(options.form_deviation_m * options.form_deviation_m + coherent + lobes);
-
-  ProbedRecognition result;
-  std::vector<ProbedPatch> corrected = raw;
-  std::optional<Curve> taken_off_along;
-  Pose2 its_pose;
-  const auto widened = [&] {
-    if (taken_off_along) {
-      add_offset_uncertainty(corrected, *taken_off_along, its_pose, options.touched_from,
-                             &result.recognition.contacts);
-    }
-    return std::move(result);
-  };
-  constexpr int kRounds = 2;
-  for (int round = 0; round <= kRounds; ++round) {
-    Recognizer recognizer(round == 0 ? with_lobes : cautious);
-    result.added = add_all(corrected, recognizer);
-    result.recognition = recognizer.recognize();
-    const std::optional<Curve> curve = curve_of(result.recognition);
-    if (!curve) return widened();
-    if (round == kRounds) break;
-    taken_off_along = curve;
-    its_pose = result.recognition.world_T_curve;
-    for (std::size_t i = 0; i < raw.size(); ++i) {
-      // Always from the original samples: only the normals change from round to round.
-      corrected[i].samples =
-          without_offset(raw[i], *curve, result.recognition.world_T_curve, options.touched_from);
-    }
-    result.corrected = true;
-  }
-
-  Recognition& answer = result.recognition;
-  Recognizer recognizer(options);
-  add_all(corrected, recognizer);
-  const Recognition plain = recognizer.recognize();
-  const bool same = curve_of(plain) && plain.shape.curve_class == answer.shape.curve_class &&
-                    plain.covariance.size() > 0;
-  Hypothesis& best = answer.hypotheses.front();
-  // If the two recognitions differ, the cautious covariance contains the coherent deviation twice.
-  if (same) {
-    answer.shape = best.shape = plain.shape;
-    answer.world_T_curve = best.world_T_curve = plain.world_T_curve;
-    answer.covariance = plain.covariance;
-    answer.white_covariance = plain.white_covariance;
-    answer.covariance_inflation = plain.covariance_inflation;
-    best.covariance = plain.hypotheses.front().covariance;
-    // If neighbours err together, the deviations of the files explain part of it; these are added
-    // below. (With a stated form deviation, or with patches of a probe without a file, the two
-    // cannot be separated, and both count.)
-    if (options.has_probe_file && !plain.unqualified_probe && plain.white_covariance.size() > 0) {
-      const double seen = plain.covariance_inflation;
-      const bool together = plain.noise_correlation_m > 0.0 && !(options.form_deviation_m > 0.0);
-      const double share = together ? std::max(1.0, seen / inflation_of_probes(corrected)) : seen;
-      answer.covariance = best.covariance = share * plain.white_covariance;
-    }
-  }
-  const std::optional<Curve> curve = curve_of(answer);
-  if (!curve || answer.covariance.size() == 0) return widened();
-  const ShapePoseCovariance more =
-      covariance_of_probes(*curve, answer.world_T_curve, corrected, options.touched_from);
-  if (more.rows() != answer.covariance.rows()) return widened();
-  answer.covariance += more;
-  best.covariance += more;
-  if (answer.status == RecognitionStatus::Recognized &&
-      !is_determined(answer.shape, answer.covariance, half_extent(corrected),
-                     options.determined_fraction)) {
-    answer.status = RecognitionStatus::Ambiguous;
-    answer.doubt = Doubt::Undetermined;
-  }
-  return widened();
-}
-
-ProbedRecognition recognise_probed(const SampleMemory& memory,
-                                   std::span<const ProbeCharacter* const> probes,
-                                   RecognizerOptions options) {
-  std::vector<ProbedPatch> patches;
-  for (const StoredPatch& stored : memory.patches()) {
-    const ProbeCharacter* const probe = probes[stored.context.probe];
-    ContactRun run = as_contacts(stored);
-    for (std::size_t i = 0; probe != nullptr && i < run.samples.size(); ++i) {
-      // Before the weight applies: the probe's noise is that of one contact.
-      ContactSample& sample = run.samples[i];
-      if (!(sample.sigma_m > 0.0)) {
-        sample.sigma_m = probe->sigma_m.value / std::sqrt(stored.samples[i].weight);
+    const int material =
+        patch.probe == nullptr ? 0 : material_sign(curve, pose, patch, touched_from);
+    if (material == 0) continue;
+    const int travel = has_lag(patch) ? travel_of(curve, pose, patch.samples) : 0;
+    for (LocalizedContact& contact : *contacts) {
+      if (contact.probe == patch.context.probe && contact.patch == patch.context.patch) {
+        add_what_offset_leaves(patch, curve, pose, material, travel, &contact.estimate);
       }
     }
-    patches.push_back({run.context, std::move(run.samples), probe, std::move(run.details)});
   }
-  // No limit below the number present: the memory has already dropped what had to make room.
-  options.memory.most_patches = std::max<std::size_t>(patches.size(), 1);
-  options.memory.most_lone_touches = std::max<std::size_t>(patches.size(), 1);
-  ProbedRecognition result = recognise_probed(patches, options);
-  result.recognition.sample_count = memory.sample_count();
-  return result;
 }
 
 }  // namespace palpate

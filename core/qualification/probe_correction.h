@@ -1,14 +1,12 @@
-// Recognition of parts that were touched by qualified probes.
+// What the file of a qualified probe takes off samples, and what it leaves open.
 #pragma once
 
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "core/curves/curve.h"
 #include "core/qualification/probe_character.h"
 #include "core/recognition/recognizer.h"
-#include "core/recognition/samples/sample_memory.h"
 
 namespace palpate {
 
@@ -52,30 +50,15 @@ ShapePoseCovariance covariance_of_probes(const Curve& curve, const Pose2& world_
 /// noise, for quantities that vary slowly: 1 + the mean over the samples of sum_j D_ij / sigma_i^2.
 double inflation_of_probes(std::span<const ProbedPatch> patches);
 
-struct ProbedRecognition {
-  Recognition recognition;
-  AddResult added;
-  /// Whether the offsets were removed. False if no curve was found whose normals could be used.
-  bool corrected = false;
-};
+/// Rounds of taking offsets off along the normals of the curve found. Lobes move a curve by no more
+/// than they are, a hundredth of a part at most, and so turn its normals by hundredths: the second
+/// round leaves of their offsets hundredths of hundredths.
+inline constexpr int kCorrectionRounds = 2;
 
-/// Recognises, removes the offsets along the normals of the curve found, and repeats this: four
-/// recognitions in all. In the first, the lobes that are still in the samples count as form
-/// deviation: without, no class fits where they are larger than the noise.
-///
-/// For the class, and for RECOGNIZED, the coherent deviation of the probes counts as form
-/// deviation, with what the lobes are uncertain by, in addition to that of the options: a bound
-/// over all coherences. The covariance of the best class comes from a recognition of its own, with
-/// white noise and the stated form deviation, plus covariance_of_probes. Coherence of the residuals
-/// beyond what the files say enlarges it further. An answer whose shape this leaves undetermined is
-/// not RECOGNIZED. `options.unqualified_probe` concerns patches without a file.
-ProbedRecognition recognise_probed(std::span<const ProbedPatch> patches, RecognizerOptions options);
-
-/// The same for an object whose samples are in memory. `probes` is indexed by the probe number of a
-/// patch. A sample that is a mean of neighbours is corrected as one sample with accordingly less
-/// noise; if no noise is stated, it counts as one sample.
-ProbedRecognition recognise_probed(const SampleMemory& memory,
-                                   std::span<const ProbeCharacter* const> probes,
-                                   RecognizerOptions options);
+/// Adds to the contacts of patches that an offset was taken off what it leaves open in another
+/// set-up.
+void add_offset_uncertainty(std::span<const ProbedPatch> patches, const Curve& curve,
+                            const Pose2& world_T_curve, TouchedFrom touched_from,
+                            std::vector<LocalizedContact>* contacts);
 
 }  // namespace palpate

@@ -5,10 +5,10 @@
 #include <optional>
 #include <utility>
 
-#include "core/numerics/probability/normal_law.h"
 #include "core/numerics/quantile.h"
 #include "core/qualification/artefact_guess.h"
 #include "core/qualification/estimated_tip.h"
+#include "core/qualification/explained_samples.h"
 #include "core/qualification/offset_evidence.h"
 #include "core/qualification/offset_fit.h"
 #include "core/qualification/setup_constants.h"
@@ -16,20 +16,9 @@
 namespace palpate {
 namespace {
 
-/// The bending of a stylus and the three legs of a trigger sensor cause lobes of order 2, 3 and 6;
-/// their overtones fall off.
-constexpr int kHighestOrder = 8;
 /// Gap between normals beyond which a direction counts as not touched. Twelve touches evenly around
 /// leave no gap, whatever their noise. [rad]
 constexpr double kGap = 1.01 * kPi / 6.0;
-/// Probability that a recording without spikes loses a sample to spike detection.
-constexpr double kFalseSpikes = 0.01;
-
-double median_size(const Eigen::VectorXd& values) {
-  std::vector<double> sizes(values.data(), values.data() + values.size());
-  for (double& size : sizes) size = std::abs(size);
-  return median_of(sizes);
-}
 
 bool is_usable(std::span<const ArtefactRecording> recordings) {
   for (const ArtefactRecording& recording : recordings) {
@@ -41,49 +30,6 @@ bool is_usable(std::span<const ArtefactRecording> recordings) {
     }
   }
   return true;
-}
-
-/// The samples of all recordings in one sequence.
-struct Ground {
-  std::vector<ArtefactSample> samples;
-  std::vector<StrokePlaces> strokes;
-  std::vector<double> arc_m;
-};
-
-Ground ground_of(const Curve& artefact, std::span<const ArtefactRecording> recordings,
-                 const std::vector<Pose2>& poses) {
-  Ground ground;
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    const PlacedSamples placed = place_samples(artefact, recordings[i], i, poses[i]);
-    const auto begin = static_cast<Eigen::Index>(ground.samples.size());
-    for (const StrokePlaces& stroke : placed.strokes) {
-      ground.strokes.push_back({begin + stroke.begin, begin + stroke.end});
-    }
-    ground.samples.insert(ground.samples.end(), placed.samples.begin(), placed.samples.end());
-  }
-  for (const ArtefactSample& sample : ground.samples) ground.arc_m.push_back(sample.arc_m);
-  return ground;
-}
-
-void set_order(OffsetUnknowns& unknowns, int order) {
-  const Eigen::VectorXd before = unknowns.offset.coefficients_m;
-  const Eigen::Index count = offset_coefficients(order);
-  unknowns.offset.order = order;
-  unknowns.offset.coefficients_m = Eigen::VectorXd::Zero(count);
-  const Eigen::Index kept = std::min(count, before.size());
-  unknowns.offset.coefficients_m.head(kept) = before.head(kept);
-}
-
-/// One flag per sample: 1 unless its residual exceeds normal noise with the size of the median
-/// residual.
-std::vector<char> within_noise(const Eigen::VectorXd& residuals, double least_scale,
-                               double false_probability) {
-  const double scale = std::max(median_size(residuals) / kMedianOfNormal, least_scale);
-  const double most =
-      scale * two_sided_normal_quantile(false_probability / static_cast<double>(residuals.size()));
-  std::vector<char> used;
-  for (const double residual : residuals) used.push_back(std::abs(residual) <= most ? 1 : 0);
-  return used;
 }
 
 bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
@@ -107,20 +53,6 @@ std::vector<std::pair<double, double>> gaps_between(std::vector<double> angles) 
     if (next - angles[i] > kGap) gaps.emplace_back(angles[i], next);
   }
   return gaps;
-}
-
-/// First guess of the set-up of each recording: its median residual.
-void guess_setups(const Ground& ground, const Eigen::VectorXd& residual_m,
-                  OffsetUnknowns& unknowns) {
-  for (std::size_t r = 0; r < unknowns.setup_m.size(); ++r) {
-    std::vector<double> own;
-    for (std::size_t i = 0; i < ground.samples.size(); ++i) {
-      if (ground.samples[i].recording == r) {
-        own.push_back(residual_m[static_cast<Eigen::Index>(i)]);
-      }
-    }
-    unknowns.setup_m[r] += median_of(own);
-  }
 }
 
 /// Moves the common part of all recordings' constants into the offset.
@@ -171,6 +103,158 @@ Qualification failed(QualificationStatus status) {
   return result;
 }
 
+/// A part of each recording's samples, enough for its pose. nullopt if one has too few.
+std::optional<std::vector<std::vector<ArtefactSample>>> thinned(
+    std::span<const ArtefactRecording> recordings) {
+  // Three of a pose, the constant, the noise, and about as many again to test them.
+  constexpr std::size_t kFewest = 12;
+  constexpr std::size_t kEnoughForPose = 1000;  // leaves a thirtieth of the noise
+  std::vector<std::vector<ArtefactSample>> thin;
+  for (const ArtefactRecording& recording : recordings) {
+    thin.push_back(thinned(recording, kEnoughForPose));
+    if (thin.back().size() < kFewest) return std::nullopt;
+  }
+  return thin.empty() ? std::nullopt : std::optional(std::move(thin));
+}
+
+/// nullopt if one of them does not lie on the artefact.
+std::optional<std::vector<Pose2>> rough_poses(
+    const Curve& artefact, const std::vector<std::vector<ArtefactSample>>& thin) {
+  std::vector<Pose2> poses;
+  for (const auto& samples : thin) {
+    const std::optional<Pose2> pose = rough_pose(artefact, samples);
+    if (!pose) return std::nullopt;
+    poses.push_back(*pose);
+  }
+  return poses;
+}
+
+/// How far samples are off the artefact at most, in the mean of a recording. [m]
+double largest_scatter_m(const Artefact& artefact, const std::vector<Pose2>& poses,
+                         const std::vector<std::vector<ArtefactSample>>& thin) {
+  double scale_m = 0.0;
+  for (std::size_t i = 0; i < thin.size(); ++i) {
+    scale_m = std::max(scale_m, scatter(artefact.curve, artefact.material, poses[i], thin[i]));
+  }
+  return scale_m;
+}
+
+/// What the samples tell of the probe, beside the unknowns of the fit.
+struct WeighedOffset {
+  OffsetEvidence evidence;
+  double lag_variance_m2 = 0.0;
+  Estimate setup_m;  ///< 0 of one set-up
+};
+
+/// Takes the order of the offset, and its noise, from its evidence, and fits offset, lag and
+/// set-ups under that noise. nullopt where a fit fails.
+std::optional<WeighedOffset> weighed(const Artefact& artefact, bool same_setup,
+                                     ExplainedSamples* on) {
+  OffsetUnknowns& unknowns = on->unknowns;
+  const std::vector<ArtefactSample>& samples = on->ground.samples;
+  const auto residuals = [&](int order) {
+    return residuals_about(artefact.curve, artefact.material, samples, unknowns, order);
+  };
+  const auto told = [&](Eigen::VectorXd residual_m, const OffsetResiduals& about) {
+    return OffsetModel{std::move(residual_m), about.flat, about.basis,      on->ground.strokes,
+                       on->ground.arc_m,      on->used,   on->least_scale_m};
+  };
+  const bool both_directions = runs_both_ways(samples);
+  // The prior that served to compare the orders must not pull the result towards 0. Ten times as
+  // wide, it reduces a harmonic of that size by at most a tenth of its standard deviation.
+  constexpr double kWide = 10.0;
+  constexpr int kRounds = 2;  // the second has a lag, if there are harmonics to show it
+  WeighedOffset result;
+  for (int round = 0; round < kRounds; ++round) {
+    const OffsetResiduals about = residuals(on->highest_order);
+    const Eigen::Index known = offset_coefficients(unknowns.offset.order);
+    auto evidence = weigh_offsets(told(
+        about.residual_m + about.basis.leftCols(known) * unknowns.offset.coefficients_m, about));
+    if (!evidence) return std::nullopt;
+    result.evidence = *std::move(evidence);
+    set_order(unknowns, result.evidence.order);
+    const bool lag = both_directions && result.evidence.order > 0;
+    unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
+    const KnownNoise noise{result.evidence.sigma_m.value, result.evidence.coherence,
+                           on->ground.strokes, on->ground.arc_m, on->used};
+    const double wide_m = kWide * result.evidence.harmonic_m;
+    const auto lag_variance_m2 =
+        fit_under_noise(artefact.curve, artefact.material, samples, noise, {wide_m}, unknowns);
+    if (!lag_variance_m2) return std::nullopt;
+    result.lag_variance_m2 = *lag_variance_m2;
+    if (same_setup) continue;
+    const OffsetResiduals left = residuals(result.evidence.order);
+    const SetupConstants constants = constants_of(
+        told(left.residual_m, left), result.evidence.coherence, result.evidence.sigma_m.value,
+        unknowns.offset.coefficients_m, unknowns.setup_m, wide_m);
+    // The constants of set-ups are expected to differ by as much as the offset does between
+    // directions and along a stroke: nothing else is known beforehand.
+    const SetupSpread setups = spread_of(
+        constants, std::hypot(result.evidence.harmonic_m, result.evidence.deviation_m.value));
+    settle_setups(constants.value_m, setups.constant_m, unknowns);
+    result.setup_m = setups.elsewhere_m;
+  }
+  unknowns.offset.covariance_m2 += result.evidence.spread_m2;
+  return result;
+}
+
+/// With an offset and a noise of its own size, a ring of another size, a wrong unit or no curve at
+/// all fits anything.
+bool can_be(const Curve& artefact, const ExplainedSamples& on, double sigma_m) {
+  constexpr double kMostOff = 0.1;  // no probe is as bad
+  // With lobes of its own size, a circle is any oval. A probe whose lobes are a hundredth of what
+  // it touches measures nothing there: no answer is RECOGNIZED with such a noise.
+  constexpr double kLargestLobe = 0.01;
+  const double radius_m = radius_of(artefact, on.ground, on.unknowns.poses);
+  return std::abs(on.unknowns.offset.coefficients_m[0]) <= kMostOff * radius_m &&
+         sigma_m <= kMostOff * radius_m &&
+         largest_lobe_m(on.unknowns.offset) <= kLargestLobe * radius_m;
+}
+
+/// The probe as its samples tell it, the tip as stated.
+ProbeCharacter probe_of(const ExplainedSamples& on, const WeighedOffset& weighed) {
+  ProbeCharacter probe;
+  probe.setup_m = weighed.setup_m;
+  probe.tip_radius_m = on.ground.samples.front().tip_radius_m;
+  probe.offset = on.unknowns.offset;
+  probe.sigma_m = weighed.evidence.sigma_m;
+  probe.deviation_m = weighed.evidence.deviation_m;
+  probe.deviation_length_m = weighed.evidence.deviation_length_m;
+  const auto spikes = static_cast<std::size_t>(std::count(on.used.begin(), on.used.end(), 0));
+  probe.spike_probability = rate_of(spikes, on.used.size());
+  if (on.unknowns.lag_m) {
+    probe.lag_m = Estimate{*on.unknowns.lag_m, std::sqrt(weighed.lag_variance_m2)};
+  }
+  return probe;
+}
+
+/// Tells each sample's offset and residual, and how well the directions are covered. `estimated_m`:
+/// what was added to the tip's radius.
+void tell_samples(const Artefact& artefact, const ExplainedSamples& on, double estimated_m,
+                  Qualification* result) {
+  const OffsetUnknowns& unknowns = on.unknowns;
+  const OffsetResiduals about = residuals_about(artefact.curve, artefact.material,
+                                                on.ground.samples, unknowns, unknowns.offset.order);
+  std::vector<double> touched;
+  for (std::size_t i = 0; i < on.ground.samples.size(); ++i) {
+    const ArtefactSample& sample = on.ground.samples[i];
+    const double residual = about.residual_m[static_cast<Eigen::Index>(i)];
+    const double offset =
+        setup_of(unknowns, sample) +
+        about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
+    result->samples.push_back({sample.recording, sample.stroke, sample.number,
+                               about.normal_angle[i], residual + offset - estimated_m, residual,
+                               on.used[i] == 0});
+    if (on.used[i] != 0) {
+      touched.push_back(about.normal_angle[i]);
+      result->worst_offset_deviation_m =
+          std::max(result->worst_offset_deviation_m,
+                   offset_deviation_at(unknowns.offset, about.normal_angle[i]));
+    }
+  }
+  result->untouched = gaps_between(std::move(touched));
+}
+
 }  // namespace
 
 std::string_view name_of(QualificationStatus status) {
@@ -197,147 +281,27 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
                       const QualificationOptions& options) {
   if (!is_usable(recordings)) return failed(QualificationStatus::NotFinite);
   if (class_of(artefact) == CurveClass::Line) return failed(QualificationStatus::BadArtefact);
-  // Three of a pose, the constant, the noise, and about as many again to test them.
-  constexpr std::size_t kFewest = 12;
-  std::vector<std::vector<ArtefactSample>> thin;
-  for (const ArtefactRecording& recording : recordings) {
-    constexpr std::size_t kEnoughForPose = 1000;  // leaves a thirtieth of the noise
-    thin.push_back(thinned(recording, kEnoughForPose));
-    if (thin.back().size() < kFewest) return failed(QualificationStatus::TooFewSamples);
-  }
-  if (thin.empty()) return failed(QualificationStatus::TooFewSamples);
-
-  OffsetUnknowns unknowns;
-  for (const auto& samples : thin) {
-    const std::optional<Pose2> pose = rough_pose(artefact, samples);
-    if (!pose) return failed(QualificationStatus::NotTheArtefact);
-    unknowns.poses.push_back(*pose);
-  }
-  const MaterialSign material =
-      side_of(artefact, unknowns.poses.front(), thin.front(), options.bore);
-
-  // Spikes: with as many harmonics as possible, so that no harmonic is taken for spikes.
-  Ground ground = ground_of(artefact, recordings, unknowns.poses);
-  const auto count = static_cast<int>(ground.samples.size());
-  const int highest =
-      std::clamp((count / 4 - 3 * static_cast<int>(recordings.size())) / 2 + 1, 1, kHighestOrder);
-  double scale = 0.0;
-  for (std::size_t i = 0; i < thin.size(); ++i) {
-    scale = std::max(scale, scatter(artefact, material, unknowns.poses[i], thin[i]));
-  }
-  // For samples without any noise: the rounding of positions of that size.
-  double size = 0.0;
-  for (const ArtefactSample& sample : ground.samples) {
-    size = std::max(size, sample.position_m.cwiseAbs().maxCoeff());
-  }
-  const double least_scale = 1e-12 * size;
-  set_order(unknowns, highest);
-  if (!options.same_setup) unknowns.setup_m.assign(recordings.size(), 0.0);
-  OffsetResiduals about;
-  // The scale of the first round is that of the residuals at the start; the second round has that
-  // of the noise.
-  constexpr int kRobustRounds = 3;
-  for (int round = 0; round < kRobustRounds; ++round) {
-    scale = std::max(scale, least_scale);
-    if (!fit_robustly(artefact, material, ground.samples, scale, {4.0 * scale}, unknowns)) {
-      return failed(QualificationStatus::NotTheArtefact);
-    }
-    ground = ground_of(artefact, recordings, unknowns.poses);
-    about = residuals_about(artefact, material, ground.samples, unknowns, highest);
-    if (unknowns.setup_m.size() > 1) {
-      guess_setups(ground, about.residual_m, unknowns);
-      about = residuals_about(artefact, material, ground.samples, unknowns, highest);
-    }
-    scale = median_size(about.residual_m) / kMedianOfNormal;
-  }
-  const std::vector<char> used = within_noise(about.residual_m, least_scale, kFalseSpikes);
-
-  Qualification result;
-  result.both_directions = runs_both_ways(ground.samples);
-  OffsetEvidence evidence;
-  double lag_variance = 0.0;
-  // The prior that served to compare the orders must not pull the result towards 0. Ten times as
-  // wide, it reduces a harmonic of that size by at most a tenth of its standard deviation.
-  constexpr double kWide = 10.0;
-  constexpr int kRounds = 2;  // the second has a lag, if there are harmonics to show it
-  for (int round = 0; round < kRounds; ++round) {
-    about = residuals_about(artefact, material, ground.samples, unknowns, highest);
-    const Eigen::Index known = offset_coefficients(unknowns.offset.order);
-    const auto weighed = weigh_offsets(
-        {about.residual_m + about.basis.leftCols(known) * unknowns.offset.coefficients_m,
-         about.flat, about.basis, ground.strokes, ground.arc_m, used, least_scale});
-    if (!weighed) return failed(QualificationStatus::NotTheArtefact);
-    evidence = *weighed;
-    set_order(unknowns, evidence.order);
-    const bool lag = result.both_directions && evidence.order > 0;
-    unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
-    const KnownNoise noise{evidence.sigma_m.value, evidence.coherence, ground.strokes, ground.arc_m,
-                           used};
-    const auto fitted = fit_under_noise(artefact, material, ground.samples, noise,
-                                        {kWide * evidence.harmonic_m}, unknowns);
-    if (!fitted) return failed(QualificationStatus::NotTheArtefact);
-    lag_variance = *fitted;
-    if (options.same_setup) continue;
-    about = residuals_about(artefact, material, ground.samples, unknowns, evidence.order);
-    const SetupConstants constants =
-        constants_of({about.residual_m, about.flat, about.basis, ground.strokes, ground.arc_m, used,
-                      least_scale},
-                     evidence.coherence, evidence.sigma_m.value, unknowns.offset.coefficients_m,
-                     unknowns.setup_m, kWide * evidence.harmonic_m);
-    // The constants of set-ups are expected to differ by as much as the offset does between
-    // directions and along a stroke: nothing else is known beforehand.
-    const SetupSpread setups =
-        spread_of(constants, std::hypot(evidence.harmonic_m, evidence.deviation_m.value));
-    settle_setups(constants.value_m, setups.constant_m, unknowns);
-    result.probe.setup_m = setups.elsewhere_m;
-  }
-  unknowns.offset.covariance_m2 += evidence.spread_m2;
-  about = residuals_about(artefact, material, ground.samples, unknowns, unknowns.offset.order);
-  // With an offset and a noise of its own size, a ring of another size, a wrong unit or no curve at
-  // all fits anything. No probe is as bad as a tenth of that.
-  constexpr double kMostOff = 0.1;
-  // With lobes of its own size, a circle is any oval. A probe whose lobes are a hundredth of what
-  // it touches measures nothing there: no answer is RECOGNIZED with such a noise.
-  constexpr double kLargestLobe = 0.01;
-  const double radius = radius_of(artefact, ground, unknowns.poses);
-  if (std::abs(unknowns.offset.coefficients_m[0]) > kMostOff * radius ||
-      evidence.sigma_m.value > kMostOff * radius ||
-      largest_lobe_m(unknowns.offset) > kLargestLobe * radius) {
+  const auto thin = thinned(recordings);
+  if (!thin) return failed(QualificationStatus::TooFewSamples);
+  auto poses = rough_poses(artefact, *thin);
+  if (!poses) return failed(QualificationStatus::NotTheArtefact);
+  const Artefact on{artefact, side_of(artefact, poses->front(), thin->front(), options.bore)};
+  const double scale_m = largest_scatter_m(on, *poses, *thin);
+  auto found = explained_samples(on, recordings, *std::move(poses), scale_m, options.same_setup);
+  const auto told = found ? weighed(on, options.same_setup, &*found) : std::nullopt;
+  if (!told || !can_be(artefact, *found, told->evidence.sigma_m.value)) {
     return failed(QualificationStatus::NotTheArtefact);
   }
-
-  result.probe.tip_radius_m = ground.samples.front().tip_radius_m;
-  result.probe.offset = unknowns.offset;
-  result.probe.sigma_m = evidence.sigma_m;
-  result.probe.deviation_m = evidence.deviation_m;
-  result.probe.deviation_length_m = evidence.deviation_length_m;
-  const auto spikes = static_cast<std::size_t>(std::count(used.begin(), used.end(), 0));
-  result.probe.spike_probability = rate_of(spikes, used.size());
-  if (unknowns.lag_m) result.probe.lag_m = Estimate{*unknowns.lag_m, std::sqrt(lag_variance)};
-  const double nominal_m = result.probe.tip_radius_m;
-  result.probe = with_estimated_tip(std::move(result.probe));
-  const double estimated_m = result.probe.tip_radius_m - nominal_m;
+  Qualification result;
+  const ProbeCharacter stated = probe_of(*found, *told);
+  result.probe = with_estimated_tip(stated);
+  const double estimated_m = result.probe.tip_radius_m - stated.tip_radius_m;
   result.tip_is_estimated = estimated_m > 0.0;
-  result.poses = unknowns.poses;
-  result.order_probabilities = evidence.probabilities;
-  result.bore = material < 0;
-  std::vector<double> touched;
-  for (std::size_t i = 0; i < ground.samples.size(); ++i) {
-    const ArtefactSample& sample = ground.samples[i];
-    const double residual = about.residual_m[static_cast<Eigen::Index>(i)];
-    const double offset =
-        setup_of(unknowns, sample) +
-        about.basis.row(static_cast<Eigen::Index>(i)).dot(unknowns.offset.coefficients_m);
-    result.samples.push_back({sample.recording, sample.stroke, sample.number, about.normal_angle[i],
-                              residual + offset - estimated_m, residual, used[i] == 0});
-    if (used[i] != 0) {
-      touched.push_back(about.normal_angle[i]);
-      result.worst_offset_deviation_m =
-          std::max(result.worst_offset_deviation_m,
-                   offset_deviation_at(unknowns.offset, about.normal_angle[i]));
-    }
-  }
-  result.untouched = gaps_between(std::move(touched));
+  result.both_directions = runs_both_ways(found->ground.samples);
+  result.poses = found->unknowns.poses;
+  result.order_probabilities = told->evidence.probabilities;
+  result.bore = on.material < 0;
+  tell_samples(on, *found, estimated_m, &result);
   result.rather_another_size = is_rather_another_size(result);
   result.status = verdict_of(result);
   return result;

@@ -45,7 +45,7 @@ struct RecognizerOptions {
   /// sample is stated: whoever knows that has measured the probe. MaximumLikelihood only.
   std::optional<bool> unqualified_probe;
   /// True if a probe file says by how much the probe deviates: `recognise_probed`
-  /// (qualification/probe_correction.h) sets it, and adds the probe's covariance to the answer.
+  /// (qualification/probed_recognition.h) sets it, and adds the probe's covariance to the answer.
   /// What deviates smoothly from a class may then be the probe's as well as the part's.
   bool has_probe_file = false;
   /// Where tips touch that have no stated side. Unknown: the answer is that from outside where the

@@ -33,13 +33,9 @@ constexpr double kMostVarianceM2 = kMaxSigmaM * kMaxSigmaM;
 
 class Reader {
  public:
-  Reader(std::string_view text, std::string_view name) : text_(text), name_(name) {}
+  Reader(std::string_view text, std::string_view name) : lines_(text, name) {}
 
   Result<ContactTable> read() {
-    constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-    if (text_.starts_with(kByteOrderMark)) {
-      text_.remove_prefix(kByteOrderMark.size());
-    }
     bool has_header = false;
     while (error_.empty() && next_line()) {
       if (trimmed(line_).empty()) continue;
@@ -47,16 +43,16 @@ class Reader {
         header_ = trimmed(line_);
         has_header = read_header();
       } else if (trimmed(line_) == header_) {
-        fail(line_begin_, csv::kNamesAgain);
+        fail(lines_.line().data(), csv::kNamesAgain);
       } else {
         read_row();
       }
     }
     if (error_.empty() && !has_header) {
-      fail(line_begin_, "no header line; it names the columns: probe,patch,x_m,y_m");
+      fail(lines_.line().data(), "no header line; it names the columns: probe,patch,x_m,y_m");
     }
     if (error_.empty() && table_.rows.empty()) {
-      fail(line_begin_, "no samples after the header line");
+      fail(lines_.line().data(), "no samples after the header line");
     }
     if (!error_.empty()) {
       return Result<ContactTable>::fail(std::move(error_));
@@ -65,15 +61,10 @@ class Reader {
   }
 
  private:
-  /// Puts the next line into line_, without comment and line end.
+  /// Puts the next line into line_, without comment.
   bool next_line() {
-    if (position_ >= text_.size()) return false;
-    ++line_number_;
-    const std::size_t end = std::min(text_.find('\n', position_), text_.size());
-    line_ = text_.substr(position_, end - position_);
-    line_begin_ = line_.data();
-    position_ = end + 1;
-    if (line_.ends_with('\r')) line_.remove_suffix(1);
+    if (!lines_.next()) return false;
+    line_ = lines_.line();
     if (const std::size_t comment = line_.find('#'); comment != std::string_view::npos) {
       line_ = line_.substr(0, comment);
     }
@@ -106,7 +97,7 @@ class Reader {
     }
     for (std::size_t i = 0; i < kRequiredColumns; ++i) {
       if (!columns_[i]) {
-        return fail(line_begin_, "column " + std::string(kColumnNames[i]) + " is missing");
+        return fail(lines_.line().data(), "column " + std::string(kColumnNames[i]) + " is missing");
       }
     }
     return true;
@@ -192,7 +183,7 @@ class Reader {
                           : fault == csv::DetailFault::NormalLength ? Column::NormalX
                                                                     : Column::NormalSigma;
     const std::string_view text = optional_field(column);
-    return fail(text.empty() ? line_begin_ : text.data(),
+    return fail(text.empty() ? lines_.line().data() : text.data(),
                 in_column(column, text) + std::string(csv::words_of(fault)));
   }
 
@@ -285,22 +276,14 @@ class Reader {
   }
 
   bool fail(const char* at, std::string_view why) {
-    if (error_.empty()) {
-      const std::ptrdiff_t column = at == nullptr || line_begin_ == nullptr ? 0 : at - line_begin_;
-      error_ = std::string(name_) + ":" + std::to_string(std::max<std::size_t>(line_number_, 1)) +
-               ":" + std::to_string(column + 1) + ": " + std::string(why);
-    }
+    if (error_.empty()) error_ = lines_.error(at, std::string(why));
     return false;
   }
 
   using PatchKey = std::tuple<std::size_t, std::uint64_t, std::size_t, std::uint32_t>;
 
-  std::string_view text_;
-  std::string_view name_;
-  std::size_t position_ = 0;
-  std::size_t line_number_ = 0;
+  csv::TextLines lines_;
   std::string_view line_;
-  const char* line_begin_ = nullptr;
   std::string_view header_;
   std::array<std::string_view, kColumnCount + 1> fields_;
   std::array<std::optional<std::size_t>, kColumnCount> columns_;  ///< place of each in a line

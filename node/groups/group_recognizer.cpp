@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "core/qualification/probe_correction.h"
+#include "core/qualification/probed_recognition.h"
 #include "node/wire/given_class_answer.h"
 
 namespace palpate {

@@ -103,18 +103,17 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
                                   [](const ProbedPatch& run) { return run.probe != nullptr; });
   std::vector<ProbedPatch> corrected = raw;
   PointsFitted fitted;
-  constexpr int kRounds = 2;  // as in recognise_probed
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, options);
     const auto curve = probed && is_told(fitted.fit)
                            ? make_curve(curve_class, fitted.fit.shape.values)
                            : std::nullopt;
-    if (curve && round == kRounds) {
+    if (curve && round == kCorrectionRounds) {
       fitted.fit.covariance +=
           covariance_of_probes(*curve, fitted.fit.world_T_curve, corrected, options.touched_from);
     }
-    if (!curve || round == kRounds) {
+    if (!curve || round == kCorrectionRounds) {
       fitted.most_chi2 = most_chi2_of_probes(corrected, fitted.fit.dof);
       return fitted;
     }

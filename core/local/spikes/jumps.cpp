@@ -20,7 +20,8 @@ std::vector<double> steps_of(std::span<const Vec2> samples) {
 /// Longer than this, a step is a jump. [m]
 double long_step_m(std::vector<double> steps) {
   constexpr double kShort = 0.2;  // of all steps; with a third of spikes, (2/3)^2 have none
-  constexpr double kJump = 4.0;   // short steps
+  // Times a short step: a stroke that slows down to a quarter of its speed has no longer ones.
+  constexpr double kJump = 4.0;
   return kJump * quantile_of(steps, kShort);
 }
 

@@ -180,7 +180,8 @@ class Search {
   /// more than `most_leave` would leave, or if no quartic within 45 degrees explains more than half
   /// of the block.
   bool settle(Block* block, std::size_t most_leave) {
-    constexpr int kMostReturns = 6;  // a sample may leave and join alternately
+    // A bound of time: a sample may leave and join alternately. The block is judged as it then is.
+    constexpr int kMostReturns = 6;
     std::size_t left = 0;
     int returns = 0;
     const bool at_cusp = cusps_.touched_by(block->start, block->start + length_, samples_.size());

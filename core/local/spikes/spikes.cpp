@@ -123,7 +123,9 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   // Each pass leaves out the spikes found before, which occupied places in the blocks. If it finds
   // none although samples are off, the next pass uses longer blocks: spikes may be the majority of
   // a short one.
-  constexpr int kMostPasses = 8;
+  constexpr int kMostPasses = 8;  // a bound of time: each but those by longer blocks finds some
+  // Spikes in a row that fill a block are a quarter of one that is four times as long: no quartic
+  // through the rest goes through them.
   constexpr int kMostDoublings = 2;
   int doublings = 0;
   double sigma_m = options.sigma_m;

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 
 #include "core/local/graph_geometry.h"
 #include "core/local/legendre_curve.h"
@@ -66,21 +68,35 @@ const Eigen::Matrix<double, 5, kAllTerms>& basis_at_middle() {
   return basis;
 }
 
-/// With `is_circular`, accepts only a path that is a circle up to kappa_s and noise; otherwise
-/// TurnsTooFar.
-LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<const PathNode> nodes,
-                   double noise, double form_deviation_m, bool may_enlarge_noise) {
-  LocalResult result;
-  WindowColumns columns(nodes.size());
-  const std::span<Vec2> positions = columns.positions;
-  const std::span<double> weights = columns.weight;
+/// How a window is to be fitted.
+struct Asked {
+  bool is_circular = false;  ///< accept only a path that is a circle up to kappa_s and noise
+  double noise_m = 0.0;      ///< of a sample
+  double form_deviation_m = 0.0;
+  bool may_enlarge_noise = false;  ///< where the polynomial does not follow
+};
+
+/// A window in its frame.
+struct PlacedWindow {
+  explicit PlacedWindow(std::size_t nodes) : columns(nodes) {}
+
+  WindowColumns columns;
+  AlignedFrame frame;
+  double node_noise = 0.0;  ///< of an average node [half extent]
+  double variance = 0.0;    ///< of an average node, smooth form deviation counted [half extent^2]
+};
+
+/// Straightens the nodes, finds their frame and weighs them. Ok, or why the window has no fit.
+LocalStatus place(const Straightening& straight, std::span<const PathNode> nodes,
+                  const Asked& asked, PlacedWindow* window) {
+  const std::span<Vec2> positions = window->columns.positions;
+  const std::span<double> weights = window->columns.weight;
   double samples_weight = 0.0;
   double weight_sum = 0.0;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Straightening::Point point = straight.to_line(nodes[i].position_m);
     if (point.shrink < kLeastShrink) {
-      result.status = LocalStatus::TurnsTooFar;
-      return result;
+      return LocalStatus::TurnsTooFar;
     }
     positions[i] = point.w_m;
     weights[i] = nodes[i].weight * squared(point.shrink);
@@ -89,87 +105,103 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   }
   auto [status, frame] = aligned_frame(positions);
   if (status != LocalStatus::Ok) {
-    result.status = status;
-    return result;
+    return status;
   }
   const double unit = frame.half_extent_m;
   // Of the original coordinates: those of the frame are measured from the window's middle.
   frame.rounding = std::max(frame.rounding, rounding_of(nodes) / unit);
   if (frame.rounding >= kMostRounding) {
-    result.status = LocalStatus::NoExtent;
-    return result;
+    return LocalStatus::NoExtent;
   }
-  // Noise of an average node, which bounds how far nodes may run back.
+  // It bounds how far nodes may run back.
   const double mean_weight = weight_sum / static_cast<double>(nodes.size());
-  const double node_noise = std::max(noise / std::sqrt(mean_weight) / unit, frame.rounding);
-  result.status = check_backtrack(frame, 2.0 * node_noise, 0.0);
-  if (result.status != LocalStatus::Ok) {
-    return result;
+  window->node_noise = std::max(asked.noise_m / std::sqrt(mean_weight) / unit, frame.rounding);
+  status = check_backtrack(frame, 2.0 * window->node_noise, 0.0);
+  if (status != LocalStatus::Ok) {
+    return status;
   }
-  result.status = LocalStatus::Unresolved;
-  if (kMinHalfExtentSigmas * node_noise >= 1.0) {
-    return result;
+  if (kMinHalfExtentSigmas * window->node_noise >= 1.0) {
+    return LocalStatus::Unresolved;
   }
   // Form error that is smooth along the arc adds at most this to any combination of the residuals.
-  const double precision =
-      samples_weight / std::max(squared(noise), squared(frame.rounding * unit) * mean_weight);
-  const double coherent = 1.0 + squared(form_deviation_m) * precision;
-  double variance_of_unit = squared(node_noise) * coherent;
+  const double precision = samples_weight / std::max(squared(asked.noise_m),
+                                                     squared(frame.rounding * unit) * mean_weight);
+  const double coherent = 1.0 + squared(asked.form_deviation_m) * precision;
+  window->variance = squared(window->node_noise) * coherent;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Vec2 uv = frame.to_frame(positions[i]);
-    columns.u[i] = uv.x();
-    columns.v[i] = uv.y();
+    window->columns.u[i] = uv.x();
+    window->columns.v[i] = uv.y();
     weights[i] /= mean_weight;
   }
-  columns.close();
+  window->columns.close();
+  window->frame = frame;
+  return LocalStatus::Ok;
+}
+
+/// The sums from which a window's polynomial follows.
+using Sums = LegendreSums<2 * kWindowDegree + 1 + kTailTerms, kSize>;
+
+/// Weighs the nodes by the slope of the path, which a quartic gives: that of the full polynomial
+/// varies with the noise. Ok, or why the window has no fit.
+LocalStatus weigh_by_slope(const Asked& asked, PlacedWindow* window) {
+  WindowColumns& columns = window->columns;
   LegendreFit<4> smooth(LegendreSums<9, 5>(columns.u, columns.v, columns.weight));
   if (!smooth.factorise(0.0)) {
-    return result;
+    return LocalStatus::Unresolved;
   }
   // Most windows that are not a circle show it here, at a third of the cost.
-  if (is_circular && squared(smooth.scores()[4]) > kCircular * squared(node_noise)) {
-    result.status = LocalStatus::TurnsTooFar;
-    return result;
-  }
-  // The slope of the tangent comes from the quartic, because that of the full polynomial varies
-  // with the noise.
-  if (columns.weigh_by_slope(smooth.coefficients()) > kMaxSlope) {
-    result.status = LocalStatus::TurnsTooFar;
-    return result;
-  }
-  const LegendreSums<2 * kWindowDegree + 1 + kTailTerms, kSize> sums(columns.u, columns.v,
-                                                                     columns.weight);
-  Fit fit(sums);
-  if (!fit.factorise(0.0)) {
-    return result;
-  }
+  const bool is_bent =
+      asked.is_circular && squared(smooth.scores()[4]) > kCircular * squared(window->node_noise);
+  return is_bent || columns.weigh_by_slope(smooth.coefficients()) > kMaxSlope
+             ? LocalStatus::TurnsTooFar
+             : LocalStatus::Ok;
+}
+
+/// Whether the polynomial follows the path: what its highest terms leave is noise. Where they may,
+/// they enlarge the noise. Ok, or why the window has no fit.
+LocalStatus follow(const Fit& fit, const Asked& asked, PlacedWindow* window) {
   const auto higher = fit.scores().tail<kSize - kFirstPrior>();
-  if (is_circular && higher.squaredNorm() > kCircular * squared(node_noise)) {
-    result.status = LocalStatus::TurnsTooFar;
-    return result;
+  if (asked.is_circular && higher.squaredNorm() > kCircular * squared(window->node_noise)) {
+    return LocalStatus::TurnsTooFar;
   }
   const double highest = fit.scores().tail<2>().squaredNorm();
-  if (highest > kAdequate * variance_of_unit) {
-    if (!may_enlarge_noise) {
-      result.status = LocalStatus::NotFollowed;
-      return result;
+  if (highest > kAdequate * window->variance) {
+    if (!asked.may_enlarge_noise) {
+      return LocalStatus::NotFollowed;
     }
-    variance_of_unit = 0.5 * highest;  // the mean square of the two terms
+    window->variance = 0.5 * highest;  // the mean square of the two terms
   }
+  return LocalStatus::Ok;
+}
 
+/// What the data say about the higher terms of the polynomial `free`.
+HigherTerms prior_of(const Fit& fit, const Vector& free, double variance_of_unit) {
   Sides<kSize - 1> units_but_first = Sides<kSize - 1>::Zero();
   units_but_first.bottomRows<kSize - 1>().setIdentity();
   solve_lower_rows(fit.factor(), &units_but_first);
   Vector variance = Vector::Zero();  // that of c_0 is not needed
   variance.tail<kSize - 1>() =
       variance_of_unit * units_but_first.colwise().squaredNorm().transpose();
+  return higher_terms(free, variance);
+}
+
+/// A polynomial under a prior of its higher terms.
+struct ShrunkFit {
+  Vector coefficients;
+  Eigen::Matrix<double, 5, 1> derivatives;  ///< 0 ... 4 at the middle
+  Eigen::Matrix<double, 5, 5> covariance;   ///< of the derivatives
+};
+
+/// nullopt if rounding leaves no factor.
+std::optional<ShrunkFit> shrunk(const Fit& fit, const Sums& sums, double variance_of_unit) {
   const Vector free = fit.coefficients();
-  const HigherTerms prior = higher_terms(free, variance);
+  const HigherTerms prior = prior_of(fit, free, variance_of_unit);
   Matrix information = fit.normal();
   information.diagonal().tail<kPriorTerms>().array() += variance_of_unit / prior.variances.array();
   Matrix factor;
   if (!cholesky(information, &factor)) {
-    return result;
+    return std::nullopt;
   }
   // Columns, multiplied by L^-1 (L is the factor): the gradients of v and its derivatives at the
   // middle, the products with the terms that the polynomial lacks, and the moments. All results of
@@ -183,44 +215,74 @@ LocalResult fit_in(const Straightening& straight, bool is_circular, std::span<co
   white.middleCols<kTailTerms>(kLacking) = sums.products<kSize, kTailTerms, kSize>();
   white.col(kMoments) = fit.moments();
   solve_lower_rows(factor, &white);
-  const Vector c = solve_lower_transposed<kSize>(factor, Vector(white.col(kMoments)));
   const Eigen::Matrix<double, 5, kMoments + 1, Eigen::RowMajor> products =
       white.leftCols<kLacking>().transpose().lazyProduct(white);
-
-  // The abscissa along the straightened circle.
-  const auto abscissa_at = [&, frame = frame](double u) { return frame.to_world({u, 0.0}).x(); };
-  const Eigen::Matrix<double, 5, 1> derivatives = products.col(kMoments);
-  const GraphGeometry geometry = graph_geometry(derivatives);
-  LocalEstimate e;
-  e.position = frame.to_world({0.0, derivatives[0]});
-  e.tangent_angle = wrap_angle(std::atan2(frame.axis.y(), frame.axis.x()) + geometry.angle);
-  e.kappa = geometry.kappa / unit;
-  e.kappa_s = geometry.kappa_s / (unit * unit);
-  Eigen::Matrix<double, 5, 5> covariance = variance_of_unit * products.leftCols<kLacking>();
+  ShrunkFit result;
+  result.coefficients = solve_lower_transposed<kSize>(factor, Vector(white.col(kMoments)));
+  result.derivatives = products.col(kMoments);
+  result.covariance = variance_of_unit * products.leftCols<kLacking>();
   // A term that the polynomial lacks goes partly into the terms that it has, because few samples
   // cannot distinguish them.
   for (int k = 0; k < kTailTerms; ++k) {
     const Eigen::Matrix<double, 5, 1> missing = basis.col(kSize + k) - products.col(kLacking + k);
-    covariance += prior.tail_variances[k] * missing * missing.transpose();
+    result.covariance += prior.tail_variances[k] * missing * missing.transpose();
   }
   // The grid points differ in how much of each term they keep.
   const Eigen::Matrix<double, 5, kPriorTerms> terms =
       inner.rightCols<kPriorTerms>() * free.tail<kPriorTerms>().asDiagonal();
-  covariance += terms.lazyProduct(prior.apart).eval().lazyProduct(terms.transpose());
+  result.covariance += terms.lazyProduct(prior.apart).eval().lazyProduct(terms.transpose());
+  return result;
+}
+
+/// What a polynomial tells of the path at the middle of its window.
+LocalEstimate estimate_of(const ShrunkFit& fit, const AlignedFrame& frame,
+                          const Straightening& straight, double noise_m) {
+  const double unit = frame.half_extent_m;
+  // The abscissa along the straightened circle.
+  const auto abscissa_at = [&](double u) { return frame.to_world({u, 0.0}).x(); };
+  const GraphGeometry geometry = graph_geometry(fit.derivatives);
+  LocalEstimate e;
+  e.position = frame.to_world({0.0, fit.derivatives[0]});
+  e.tangent_angle = wrap_angle(std::atan2(frame.axis.y(), frame.axis.x()) + geometry.angle);
+  e.kappa = geometry.kappa / unit;
+  e.kappa_s = geometry.kappa_s / (unit * unit);
   const Eigen::Vector4d units(unit, 1.0, 1.0 / unit, 1.0 / (unit * unit));
   const Eigen::Matrix<double, 4, 5> rows = units.asDiagonal() * geometry.jacobian;
-  e.covariance = rows.lazyProduct(covariance).eval().lazyProduct(rows.transpose());
-  const double length = arc_length<kSize>(c, frame.first_u, frame.last_u);
+  e.covariance = rows.lazyProduct(fit.covariance).eval().lazyProduct(rows.transpose());
+  const double length = arc_length<kSize>(fit.coefficients, frame.first_u, frame.last_u);
   const double longer = length / (frame.last_u - frame.first_u);
   e.window_arc_m = longer * straight.arc_m(abscissa_at(frame.first_u), abscissa_at(frame.last_u));
-  e.sigma_m = noise;
-  e = straight.to_world(e);
-  result.estimate = e;
-  result.status = LocalStatus::Ok;
-  if (!is_finite(e)) {
-    result = {LocalStatus::NotFinite, {}};
+  e.sigma_m = noise_m;
+  return straight.to_world(e);
+}
+
+/// The estimate in the middle of a window that is straightened so.
+LocalResult fit_in(const Straightening& straight, std::span<const PathNode> nodes,
+                   const Asked& asked) {
+  PlacedWindow window(nodes.size());
+  const auto without_fit = [](LocalStatus status) { return LocalResult{status, {}}; };
+  if (const LocalStatus status = place(straight, nodes, asked, &window);
+      status != LocalStatus::Ok) {
+    return without_fit(status);
   }
-  return result;
+  if (const LocalStatus status = weigh_by_slope(asked, &window); status != LocalStatus::Ok) {
+    return without_fit(status);
+  }
+  const Sums sums(window.columns.u, window.columns.v, window.columns.weight);
+  Fit fit(sums);
+  if (!fit.factorise(0.0)) {
+    return without_fit(LocalStatus::Unresolved);
+  }
+  if (const LocalStatus status = follow(fit, asked, &window); status != LocalStatus::Ok) {
+    return without_fit(status);
+  }
+  const auto found = shrunk(fit, sums, window.variance);
+  if (!found) {
+    return without_fit(LocalStatus::Unresolved);
+  }
+  const LocalEstimate estimate = estimate_of(*found, window.frame, straight, asked.noise_m);
+  return is_finite(estimate) ? LocalResult{LocalStatus::Ok, estimate}
+                             : without_fit(LocalStatus::NotFinite);
 }
 
 }  // namespace
@@ -232,13 +294,13 @@ LocalResult fit_window(std::span<const PathNode> nodes, double noise, double for
   }
   const Straightening straight(nodes);
   const auto graph_of = [&] {
-    return fit_in(straight.left_bent(), false, nodes, noise, form_deviation_m, may_enlarge_noise);
+    return fit_in(straight.left_bent(), nodes, {false, noise, form_deviation_m, may_enlarge_noise});
   };
   // Form deviation hides whether the path is a circle. Such windows are as long as a graph allows.
   if (form_deviation_m > 0.0) {
     return graph_of();
   }
-  const auto straightened = [&] { return fit_in(straight, true, nodes, noise, 0.0, false); };
+  const auto straightened = [&] { return fit_in(straight, nodes, {true, noise, 0.0, false}); };
   if (straight.turns_beyond(kMostTurnOfAGraph)) {
     return straightened();
   }

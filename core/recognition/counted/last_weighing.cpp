@@ -11,8 +11,9 @@ namespace {
 /// A search takes as much as some followed weighings do: ten searches while a patch grows tenfold.
 constexpr double kGrowth = 1.25;
 
-/// Whether a class that had more than `most` has less than a fiftieth of it left: a few samples
-/// seldom speak so strongly.
+/// Whether a class that had more than `most` has less than a fiftieth of it left. New samples of a
+/// true class do that to its probability once in fifty times at most (Ville's inequality: against
+/// it, likelihood ratios are martingales). So its fit may have been lost.
 bool has_lost_one(const ClassProbabilities& now, const ClassProbabilities& before, double most) {
   constexpr double kLeft = 0.02;
   for (std::size_t i = 1; i < now.size(); ++i) {

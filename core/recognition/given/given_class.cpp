@@ -99,6 +99,8 @@ struct Explored {
 /// (A conic's valley leads to the limit of its class.)
 void follow_valleys(const LocalPoints& local, const GivenNoise& noise, int dof,
                     std::vector<GivenCandidate>* minima) {
+  // A bound of time: each takes some tens of descents. What is not at its end then stays unsettled,
+  // and goes behind what is.
   constexpr int kMostWalks = 2;
   for (GivenCandidate& candidate : *minima) {
     const bool arms = candidate.curve.curve_class == CurveClass::SemiCubicalParabola ||
@@ -128,6 +130,8 @@ void follow_valleys(const LocalPoints& local, const GivenNoise& noise, int dof,
 
 Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNoise& noise,
                  TouchedFrom touched_from, int dof) {
+  // A bound of time: each but the last may find a minimum that is lower than all that the search
+  // has found. The last passes what is lower, so that the reach holds it.
   constexpr int kMostWalks = 4;
   Explored explored;
   explored.minima = search_minima(curve_class, local, noise);
@@ -168,7 +172,7 @@ Explored explore(CurveClass curve_class, const LocalPoints& local, const GivenNo
 /// there is a minimum; else for as many as two, in which a minimum shows that the limit is beside.
 void follow(double limit, const LocalPoints& local, const GivenNoise& noise,
             GivenCandidate* valley) {
-  constexpr int kMostDescents = 10;
+  constexpr int kMostDescents = 10;  // a bound of time: what still gains then stays unsettled
   constexpr int kDescentsToLimit = 2;
   for (int i = 0; i < kMostDescents && !valley->settled; ++i) {
     const double before = valley->cost;
@@ -214,6 +218,59 @@ bool is_outside(const GivenCandidate& taken, const GivenCandidate& other,
            outside * variance);
 }
 
+/// Tells the odds over the best minimum of the other side, and the most probable other curve;
+/// whether valleys lead away from the one that is taken. `of_unknowns`, `variance`: as
+/// is_outside has them.
+void tell_others(const Explored& explored, const LocalPoints& local, const GivenNoise& noise,
+                 int dof, const ShapePoseCovariance& of_unknowns, double variance, GivenFit* fit) {
+  const GivenChoice& choice = explored.choice;
+  const GivenCandidate& taken = explored.minima[choice.taken];
+  const auto odds_over = [&](const GivenCandidate& other) {
+    return log_odds_of(taken, other, dof, local, noise.stated);
+  };
+  std::vector<std::size_t> others = choice.twins;
+  if (choice.other_side) {
+    fit->side_log_odds = odds_over(explored.minima[*choice.other_side]);
+    others.push_back(*choice.other_side);
+  }
+  const GivenCandidate* rival = nullptr;
+  for (const std::size_t i : others) {
+    const GivenCandidate& other = explored.minima[i];
+    if (i != choice.other_side && !is_outside(taken, other, of_unknowns, variance)) {
+      continue;
+    }
+    if (!other.settled) {
+      // A valley with no end in sight leads away from the curve: there is no other shape to tell.
+      GivenCandidate end = other;
+      const double gain = std::min(gain_ahead(end), end.cost);
+      end.cost -= gain;
+      end.misfit -= gain;
+      fit->bounded = fit->bounded && odds_over(end) > 0.5 * kReach * kReach;
+    } else if (rival == nullptr || odds_over(other) < odds_over(*rival)) {
+      rival = &other;
+    }
+  }
+  if (rival != nullptr) {
+    GivenRival& told = fit->rival.emplace();
+    report_place(exact_of(rival->curve), local, &told.shape, &told.world_T_curve);
+    told.log_odds = odds_over(*rival);
+    told.chi2 = 2.0 * rival->cost / (noise.stated ? 1.0 : variance);
+  }
+}
+
+/// Why the points tell no curve of the class, or nullopt.
+std::optional<GivenStatus> lacking(CurveClass curve_class, const LocalPoints& local) {
+  if (different(local.rough) + local.normals <
+      static_cast<std::size_t>(degrees_of_freedom(curve_class))) {
+    return GivenStatus::TooFewPoints;
+  }
+  // Two touches with normals lie on one line, but determine a circle.
+  if (curve_class != CurveClass::Line && local.normals == 0 && on_one_line(local)) {
+    return GivenStatus::Collinear;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string_view name_of(GivenStatus status) {
@@ -254,28 +311,21 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
     return fit;
   }
   fit.used = local->index.size();
-  if (different(local->rough) + local->normals <
-      static_cast<std::size_t>(degrees_of_freedom(curve_class))) {
-    return fit;
-  }
-  // Two touches with normals lie on one line, but determine a circle.
-  if (curve_class != CurveClass::Line && local->normals == 0 && on_one_line(*local)) {
-    fit.status = GivenStatus::Collinear;
+  if (const auto why = lacking(curve_class, *local)) {
+    fit.status = *why;
     return fit;
   }
   const int dof =
       static_cast<int>(local->index.size() + local->normals) - degrees_of_freedom(curve_class);
   const GivenNoise noise{points, options.sigma_m, stated};
   Explored explored = explore(curve_class, *local, noise, options.touched_from, dof);
-  const std::vector<GivenCandidate>& minima = explored.minima;
-  const GivenChoice& choice = explored.choice;
-  if (minima.empty()) {
+  if (explored.minima.empty()) {
     fit.status = std::isfinite(misfit_of_limit(curve_class, *local, noise))
                      ? GivenStatus::AtLimit
                      : GivenStatus::Unfinished;
     return fit;
   }
-  GivenCandidate found = minima[choice.taken];
+  GivenCandidate found = explored.minima[explored.choice.taken];
   if (curve_class == CurveClass::Line) {
     slide_to_mean(*local, &found.curve);
   }
@@ -288,17 +338,11 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
       fit.status = limit <= found.misfit + kAlike ? GivenStatus::AtLimit : GivenStatus::Unfinished;
       return fit;
     }
-    explored.minima[choice.taken] = found;
+    explored.minima[explored.choice.taken] = found;
     exact = exact_fit(found, *local, noise);
   }
   fit.status = GivenStatus::Fitted;
   fit.side = found.side;
-  const auto odds_over = [&](std::size_t other) {
-    return log_odds_of(minima[choice.taken], minima[other], dof, *local, stated);
-  };
-  if (choice.other_side) {
-    fit.side_log_odds = odds_over(*choice.other_side);
-  }
   fit.stationarity = stationarity_of(exact.descent.squares, *local,
                                      static_cast<std::size_t>(Unknowns(curve_class).count));
   GivenReach reach = explored.reach;
@@ -313,34 +357,7 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   const ShapePoseCovariance of_unknowns =
       report_covariance(exact.placed, exact.descent.squares, *local, reach, &fit);
   const double variance = variance_of(found.cost, dof, *local, stated);
-  std::vector<std::size_t> others = choice.twins;
-  if (choice.other_side) {
-    others.push_back(*choice.other_side);
-  }
-  std::optional<std::size_t> rival;
-  for (const std::size_t twin : others) {
-    if (twin != choice.other_side &&
-        !is_outside(minima[choice.taken], minima[twin], of_unknowns, variance)) {
-      continue;
-    }
-    if (!minima[twin].settled) {
-      // A valley with no end in sight leads away from the curve: there is no other shape to tell.
-      GivenCandidate end = minima[twin];
-      const double gain = std::min(gain_ahead(end), end.cost);
-      end.cost -= gain;
-      end.misfit -= gain;
-      fit.bounded = fit.bounded && log_odds_of(minima[choice.taken], end, dof, *local, stated) >
-                                       0.5 * kReach * kReach;
-    } else if (!rival || odds_over(twin) < odds_over(*rival)) {
-      rival = twin;
-    }
-  }
-  if (rival) {
-    GivenRival& told = fit.rival.emplace();
-    report_place(exact_of(minima[*rival].curve), *local, &told.shape, &told.world_T_curve);
-    told.log_odds = odds_over(*rival);
-    told.chi2 = 2.0 * minima[*rival].cost / (stated ? 1.0 : variance);
-  }
+  tell_others(explored, *local, noise, dof, of_unknowns, variance, &fit);
   report_residuals(&exact.placed, *local, points, &fit);
   report_noise(points, *local, stated, options.sigma_m, 2.0 * to_double(exact.descent.squares.cost),
                &fit);

@@ -130,11 +130,11 @@ class Walk {
       reach_->points.push_back(bend);
       return;
     }
-    constexpr int kMostSteps = 40;
+    constexpr int kMostSteps = 40;      // growing all the way, 13 lead out of sight
     constexpr double kFirst = 0.25;     // of the way that a linear model goes
     constexpr double kLeast = 0.01;     // of that way: a shorter step means that there is no way
     constexpr double kFarthest = 64.0;  // times that way is out of sight
-    constexpr double kGrowth = 1.5;
+    constexpr double kGrowth = 1.5;     // less than by what a step too long is cut: no swinging
     Held here{minimum_, 0.0, true};
     Held lowest = here;
     Step ahead = scaled(along, way);  // for one deviation of the parameter

@@ -203,6 +203,8 @@ bool is_better(const GivenCandidate& u, const GivenCandidate& v) {
 void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* candidate,
             const HeldUnknowns& held) {
   const DescentEffort on_all{100, 1e-8, 0.0, held};
+  // Each leaves of the weights' error about the noise over the radius of curvature: with a tenth of
+  // it, ten leave rounding.
   constexpr int kMostRounds = 10;
   // Relative: of a weight, then less than that of what the residuals tell of the curve.
   constexpr double kSame = 1e-6;

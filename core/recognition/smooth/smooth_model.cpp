@@ -336,8 +336,8 @@ double SmoothModel::noise_ratio() const {
 
 SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated,
                              const SectionSource& source) {
-  constexpr double kSame = 1.25;  // times that smooth alike
-  constexpr int kMostTimes = 3;
+  constexpr double kSame = 1.25;  // times that smooth alike: as noises do 12 % apart
+  constexpr int kMostTimes = 3;   // a bound of time: the last one's sections are taken
   int smoothings = 0;
   // From the noise of that time to the one that its sections show.
   const auto settled = [&](double time, FitData* smoothed) {

@@ -49,7 +49,7 @@ struct PlacedInFull {
 /// To the optimum with weights of the curve found, as the fit of a given class has them. Each walk
 /// leaves of the weights' error about the noise over the radius of curvature.
 std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data, WorkBudget& work) {
-  constexpr int kMostWalks = 10;
+  constexpr int kMostWalks = 10;  // with a tenth of an error left by each, to rounding
   constexpr double kSame = 1e-6;  // of chi-square: a thousandth of a deviation
   PlacedInFull placed = std::move(start);
   for (int walk = 0; walk < kMostWalks; ++walk) {

@@ -14,7 +14,7 @@
 
 #include "core/numerics/probability/chi_square.h"
 #include "core/qualification/coherent_whitening.h"
-#include "core/qualification/probe_correction.h"
+#include "core/qualification/probed_recognition.h"
 #include "core/qualification/qualify.h"
 #include "tests/support/ellipse_bound.h"
 #include "tests/support/probe_scene.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "core/numerics/probability/chi_square.h"
-#include "core/qualification/probe_correction.h"
+#include "core/qualification/probed_recognition.h"
 #include "core/qualification/qualify.h"
 #include "tests/bench/real/simulated_part.h"
 #include "tests/support/ellipse_bound.h"

@@ -1,5 +1,5 @@
 // A part touched by a qualified probe: at the bound with its file, and honest.
-#include "core/qualification/probe_correction.h"
+#include "core/qualification/probed_recognition.h"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/qualification/probe_correction.h"
+#include "core/qualification/probed_recognition.h"
 #include "node/files/printable.h"
 #include "node/files/quantity.h"
 #include "node/wire/convert.h"

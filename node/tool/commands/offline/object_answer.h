@@ -28,7 +28,7 @@ std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
                                                  std::vector<std::string>& files,
                                                  std::vector<std::string>& notes);
 
-/// By qualified probes where there are any (core/qualification/probe_correction.h). `notes`
+/// By qualified probes where there are any (core/qualification/probed_recognition.h). `notes`
 /// receives what is to be said beside the answer.
 Answered recognise(const FitInput& input, const RecognizerOptions& options,
                    const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes);
