@@ -80,6 +80,14 @@ std::size_t block_length(std::span<const Vec2> samples, double sigma_m) {
   return std::min(length, samples.size());
 }
 
+/// Least squares in one block.
+struct OfBlock {
+  std::size_t start = 0;
+  double largest_m = 0.0;          ///< residual
+  double largest_on_path_m = 0.0;  ///< likewise, of the samples in the fit
+  double floor_m = 0.0;            ///< what form leaves
+};
+
 /// Least squares in all blocks of one length.
 struct Blocks {
   LocalStatus status = LocalStatus::TooFewSamples;
@@ -91,6 +99,9 @@ struct Blocks {
   double end_gap = 0.0;
   /// By more than 45 degrees: so it does to a spike there, and the bend counts as form.
   bool bends_to_end = false;
+  std::vector<OfBlock> each;
+
+  double noise_of(const OfBlock& block) const { return std::max(sigma_m, block.floor_m); }
 };
 
 /// Whether a parabola through three of the four samples at an end of a stroke misses the fourth by
@@ -104,12 +115,6 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
   work.spend(WorkKind::SpikeRow, kBlocksOfSample * samples.size());
   Blocks result;
   ResidualBlock block;
-  struct OfBlock {
-    double largest_m = 0.0;
-    double largest_on_path_m = 0.0;
-    double floor_m = 0.0;
-  };
-  std::vector<OfBlock> of_blocks;
   std::vector<double> sizes, extents;
   sizes.reserve(2 * samples.size());
   for_each_block(samples.size(), length, length / 2, [&](std::size_t start) {
@@ -120,7 +125,7 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
       return;
     }
     result.status = LocalStatus::Ok;
-    OfBlock of_block{block.largest(), 0.0, 0.0};
+    OfBlock of_block{start, block.largest(), 0.0, 0.0};
     for (std::size_t i = 0; i < length; ++i) {
       if (use.empty() || use[i] != 0) {
         sizes.push_back(std::abs(block.studentised(i)));
@@ -137,19 +142,32 @@ Blocks fit_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> o
     result.bends_to_end = result.bends_to_end || ((first || last) && !at_cusp &&
                                                   block.steepest() > ResidualBlock::kMaxSlope);
     of_block.floor_m = noise_floor(block, at_cusp);
-    of_blocks.push_back(of_block);
+    result.each.push_back(of_block);
   });
   if (result.status == LocalStatus::Ok) {
     result.extent_m = median_of(extents);
     result.sigma_m = sigma_m > 0.0 ? sigma_m : robust_sigma(sizes);
-    for (const OfBlock& of_block : of_blocks) {
-      const double unit_m = std::max(result.sigma_m, of_block.floor_m);
+    for (const OfBlock& of_block : result.each) {
+      const double unit_m = result.noise_of(of_block);
       result.largest = std::max(result.largest, of_block.largest_m / unit_m);
       result.largest_on_path =
           std::max(result.largest_on_path, of_block.largest_on_path_m / unit_m);
     }
   }
   return result;
+}
+
+/// By sample: whether it lies in a block of which one is off, or whose quartic bends so much that
+/// form hides what is off: spikes may bend it.
+std::vector<std::uint8_t> in_doubtful_blocks(const Blocks& blocks, double threshold,
+                                             std::size_t length, std::size_t samples) {
+  std::vector<std::uint8_t> flags(samples);
+  for (const OfBlock& block : blocks.each) {
+    if (block.floor_m > blocks.sigma_m || block.largest_m > threshold * blocks.sigma_m) {
+      std::fill_n(flags.begin() + static_cast<std::ptrdiff_t>(block.start), length, 1);
+    }
+  }
+  return flags;
 }
 
 /// The samples on the path.
@@ -295,7 +313,11 @@ BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::ui
   const double limit_m = threshold * survey.sigma_m;
   const bool leaves = blocks.bends_to_end && (leaves_at_end(samples.first<4>(), limit_m) ||
                                               leaves_at_end(samples.last<4>(), limit_m));
-  survey.is_any_off = blocks.largest > threshold || (is_resolved() && (is_out_of_order || leaves));
+  const bool may_be_anywhere = is_resolved() && (is_out_of_order || leaves);
+  survey.is_any_off = blocks.largest > threshold || may_be_anywhere;
+  if (survey.is_any_off && !may_be_anywhere) {
+    survey.doubtful = in_doubtful_blocks(blocks, threshold, survey.length, samples.size());
+  }
   if (!(sigma_m > 0.0)) {
     look_for_spiked_noise(flagged(samples, on_path), blocks.largest_on_path, threshold, &survey,
                           work);

@@ -32,6 +32,8 @@ struct BlockSurvey {
   bool is_any_off = false;  ///< a sample is off the quartic of its block, or behind earlier samples
   /// Spikes may have enlarged the noise; sigma_m is then a deliberately low starting value.
   bool is_noise_spiked = false;
+  /// By sample: whether it lies in a block of which one may be off. Empty: spikes may be anywhere.
+  std::vector<std::uint8_t> doubtful;
 };
 
 /// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =

@@ -79,6 +79,7 @@ class Search {
          const BlockSurvey& survey, double threshold, const CuspEnds& cusps, WorkBudget& work)
       : samples_(samples),
         on_path_(on_path),
+        doubtful_(survey.doubtful),
         jumps_(jumps_of(samples)),
         threshold_(threshold),
         length_(survey.length),
@@ -87,8 +88,11 @@ class Search {
         work_(work) {
     for_each_block(samples.size(), length_, std::max<std::size_t>(length_ / 4, 1),
                    [&](std::size_t start) {
-                     blocks_.emplace_back();
-                     blocks_.back().start = start;
+                     const auto doubtful = flags_of(doubtful_, start, length_);
+                     if (doubtful.empty() || std::ranges::count(doubtful, 1) > 0) {
+                       blocks_.emplace_back();
+                       blocks_.back().start = start;
+                     }
                    });
     settle_blocks();
   }
@@ -123,7 +127,9 @@ class Search {
     }
     std::vector<std::uint8_t> is_spike(samples_.size());
     for (std::size_t i = 0; i < is_spike.size(); ++i) {
-      is_spike[i] = verdicts[i].is_spike ? 1 : 0;
+      // Others, not all blocks of which were fitted, are no spikes.
+      const bool is_judged = doubtful_.empty() || doubtful_[i] != 0;
+      is_spike[i] = is_judged && verdicts[i].is_spike ? 1 : 0;
     }
     return is_spike;
   }
@@ -267,6 +273,7 @@ class Search {
 
   std::span<const Vec2> samples_;
   std::span<const std::uint8_t> on_path_;
+  std::span<const std::uint8_t> doubtful_;
   std::vector<std::uint8_t> jumps_;
   double threshold_;
   std::size_t length_;
@@ -281,10 +288,10 @@ class Search {
 }  // namespace
 
 SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          const BlockSurvey& survey, bool noise_is_stated, double threshold,
+                          const BlockSurvey& survey, bool noise_is_known, double threshold,
                           const CuspEnds& cusps, WorkBudget& work) {
   Search search(samples, on_path, survey, threshold, cusps, work);
-  if (!noise_is_stated) {
+  if (!noise_is_known) {
     search.refine_noise();
   }
   return {search.judge(), search.sigma_m()};

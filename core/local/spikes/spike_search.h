@@ -23,10 +23,11 @@ struct SpikeSearch {
 ///
 /// A block makes no decision if at most half of its samples join or if it turns by more than 45
 /// degrees. A block does not decide on samples beyond the ends of its fit: these may be a bend or a
-/// step. Each sample is judged by the block that removes fewest samples. If nobody states the
-/// noise, it is estimated from the residuals of the samples that joined.
+/// step. Each sample is judged by the block that removes fewest samples. If the noise is not known,
+/// it is estimated from the residuals of the samples that joined. Only blocks with a doubtful
+/// sample are fitted (BlockSurvey).
 SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          const BlockSurvey& survey, bool noise_is_stated, double threshold,
+                          const BlockSurvey& survey, bool noise_is_known, double threshold,
                           const CuspEnds& cusps, WorkBudget& work);
 
 }  // namespace palpate

@@ -122,13 +122,16 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
                                                static_cast<double>(kept.samples.size()));
   // Each pass leaves out the spikes found before, which occupied places in the blocks. If it finds
   // none although samples are off, the next pass uses longer blocks: spikes may be the majority of
-  // a short one.
+  // a short one. Once less than one sample a block is found, the noise is told, and the next ones
+  // search only where samples are off still.
   constexpr int kMostPasses = 8;  // a bound of time: each but those by longer blocks finds some
   // Spikes in a row that fill a block are a quarter of one that is four times as long: no quartic
   // through the rest goes through them.
   constexpr int kMostDoublings = 2;
   int doublings = 0;
   double sigma_m = options.sigma_m;
+  double last_sigma_m = 0.0;
+  std::size_t last_found = samples.size();
   BlockSurvey survey;
   std::vector<std::uint8_t> on_path;
   WorkBudget unbounded;
@@ -157,10 +160,18 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     if ((!survey.is_any_off && !survey.is_noise_spiked) || !work.allows()) {
       break;
     }
-    BlockSurvey longer = survey;
-    longer.length = std::min(survey.length << doublings, kept.samples.size());
-    SpikeSearch found = search_spikes(kept.samples, on_path, longer, sigma_m > 0.0,
+    BlockSurvey searched = survey;
+    searched.length = std::min(survey.length << doublings, kept.samples.size());
+    const bool everywhere =
+        last_found > kept.samples.size() / survey.length || survey.is_noise_spiked;
+    if (everywhere) {
+      searched.doubtful.clear();
+    } else {
+      searched.sigma_m = last_sigma_m;
+    }
+    SpikeSearch found = search_spikes(kept.samples, on_path, searched, sigma_m > 0.0 || !everywhere,
                                       result.threshold, options.cusps, work);
+    last_sigma_m = found.sigma_m;
     if (doublings > 0) {
       spare_runs(static_cast<std::ptrdiff_t>(survey.length / 2), &found.is_spike);
     }
@@ -168,9 +179,10 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
     const std::size_t before = kept.samples.size();
     kept.drop(found.is_spike, &result.indices);
     if (kept.samples.size() < before) {
+      last_found = before - kept.samples.size();
       doublings = 0;
     } else if (survey.is_any_off && doublings < kMostDoublings &&
-               longer.length < kept.samples.size()) {
+               searched.length < kept.samples.size()) {
       ++doublings;
     } else {
       break;
