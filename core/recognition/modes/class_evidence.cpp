@@ -23,8 +23,7 @@ constexpr double kTold = 4.0;
 
 /// Laplace's formula at a mode.
 void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
-  evidence->determined =
-      static_cast<double>(kMostCoordinates) - inverse_cholesky(mode.root).trace();
+  evidence->determined = determined_coordinates(mode);
   evidence->log_prior = mode.log_prior;
   evidence->log_occam = log_mass(mode) + 0.5 * evidence->fitted_chi2;
   evidence->log_all_modes = 0.0;

@@ -54,6 +54,10 @@ TouchedMatrix root_of(const TouchedCurve& curve, int fixed) {
   return fixed < 0 ? curve.root : root_without(curve.root, fixed);
 }
 
+double determined_coordinates(const TouchedCurve& settled) {
+  return static_cast<double>(kMostCoordinates) - inverse_cholesky(settled.root).trace();
+}
+
 double log_mass(const TouchedCurve& settled, int fixed) {
   return settled.left_to_gain - potential(settled) - 0.5 * log_determinant(root_of(settled, fixed));
 }
@@ -160,8 +164,10 @@ std::optional<TouchedCurve> followed_from_prior(Touch touch, const FitData& data
     const bool last = !(touch.weight < full);
     curve = descend(touch, data, *std::move(curve), -1, work, last ? kStepsFromFit : kStepsPerLevel,
                     last ? kSettledPotential : kOnTheWay);
-    // Less noise leaves no more of it.
-    if (!(log_mass(*curve) > log_least)) {
+    // What the data determine now, less noise determines the more: by Laplace's formula each such
+    // coordinate takes the ratio of the noises.
+    const double taken = determined_coordinates(*curve) * std::log(full / touch.weight);
+    if (!(log_mass(*curve) - taken > log_least)) {
       return std::nullopt;
     }
     if (last) {

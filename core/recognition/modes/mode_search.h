@@ -24,6 +24,10 @@ double log_determinant(const TouchedMatrix& root);
 /// The curve's root with coordinate `fixed` held (-1: none).
 TouchedMatrix root_of(const TouchedCurve& curve, int fixed);
 
+/// How many coordinates the data determine at the end of a descent: the prior's share of each is
+/// its variance, in units of the widths.
+double determined_coordinates(const TouchedCurve& settled);
+
 /// log of the integral about the mode beside `settled`, the end of a descent, by Laplace's formula,
 /// with all coordinates but `fixed` (-1: none) in units of the widths.
 double log_mass(const TouchedCurve& settled, int fixed = -1);

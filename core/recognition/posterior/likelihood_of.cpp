@@ -57,9 +57,9 @@ Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {
   // Of neighbours that err together each tells so much less of what the path does slowly.
   likelihood.tempering = arcs.smooth.noise_time;
   likelihood.samples = n / likelihood.tempering;
-  // Residuals below the rounding of the coordinates say nothing.
-  const double rounding = rounding_level(arcs.data) / arcs.sigma;
-  likelihood.chi2_floor = arcs.sigma_known ? 0.0 : likelihood.samples * rounding * rounding;
+  // Residuals below any probe's noise, or the rounding of the coordinates, say nothing.
+  const double least = std::max(rounding_level(arcs.data), kFinest) / arcs.sigma;
+  likelihood.chi2_floor = arcs.sigma_known ? 0.0 : likelihood.samples * least * least;
   likelihood.coherent_variance =
       coherent_variance(arcs.data, form_deviation_m / arcs.data.scale) / likelihood.tempering;
   likelihood.noise_chi2 = arcs.smooth.chi2;
@@ -75,7 +75,10 @@ ResidualExcess residual_excess(const Arcs& arcs, const Likelihood& likelihood, d
   const double variance = chi2 / dof;  // of the residuals, in units of sigma^2
   const double noise = smooth.dof() > 0 ? smooth.chi2 / smooth.dof() : 1.0;
   const double excess = arcs.sigma * std::sqrt(std::max(0.0, variance - noise));
-  const ResidualCorrelation correlation = correlation_along(placed, arcs.data);
+  // What is no noise, neighbours do not share either.
+  const bool are_noise = likelihood.sigma_known || chi2 > likelihood.chi2_floor;
+  const ResidualCorrelation correlation =
+      are_noise ? correlation_along(placed, arcs.data) : ResidualCorrelation{};
   // Where the noise itself is shared by neighbours, residuals of the class that are so show nothing
   // more.
   const bool shared_noise = smooth.noise_time > 1.0;

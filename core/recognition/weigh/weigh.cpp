@@ -203,14 +203,14 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   const double dof =
       static_cast<double>(residuals) - degrees_of_freedom(best->canonical.shape.curve_class);
   const double smooth_dof = arcs->smooth.dof();
-  if (dof < kFewestDegreesOfNoise || smooth_dof < kFewestDegreesOfNoise ||
-      arcs->sigma * std::sqrt(best->chi2 / dof) < kExact) {
+  if (dof < kFewestDegreesOfNoise || smooth_dof < kFewestDegreesOfNoise) {
     return std::nullopt;
   }
   // Of its standard deviations; a false alarm, one in a thousand, costs a weighing by less noise.
   constexpr double kSeen = 3.0;
   // Log variances of normal samples have the variance 2 / dof.
-  const double variance = best->chi2 / dof;
+  const double least = kExact / arcs->sigma;
+  const double variance = std::max(best->chi2 / dof, least * least);
   const bool better = std::log(arcs->smooth.chi2 / smooth_dof / variance) >
                       kSeen * std::sqrt(2.0 / dof + 2.0 / smooth_dof);
   return better ? std::optional(arcs_of_noise(std::move(*arcs), std::sqrt(variance)))

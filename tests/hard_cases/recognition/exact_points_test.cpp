@@ -1,8 +1,11 @@
 // Points of a formula, without noise and none stated: what somebody tries first.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <iostream>
+#include <vector>
 
+#include "core/recognition/recognizer.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/scene_prior.h"
 #include "tests/support/test_rng.h"
@@ -45,6 +48,47 @@ TEST(ExactPoints, AreRecognizedAtLeastAsOftenAsNoisyOnes) {
   if (test::counts_tell()) {
     EXPECT_GE(exact.right, noisy.right);
   }
+}
+
+/// One stroke along a curve about the origin, at even steps of its parameter. [m]
+template <typename Place>
+Recognition along(Place place, double span, int count) {
+  std::vector<ContactSample> stroke;
+  for (int i = 0; i < count; ++i) {
+    stroke.push_back({place(span * i / (count - 1)), 0.0, 0});
+  }
+  Recognizer recognizer;
+  recognizer.add({}, stroke);
+  return recognizer.recognize();
+}
+
+/// Sections of a full turn do not follow it; that is no noise, and what the class leaves is none
+/// either. Only the limit of work may be told.
+TEST(ExactPoints, OfAConicAreNeverDoubted) {
+  const double full_turn = 2.0 * kPi;
+  int cut = 0;
+  int answers = 0;
+  const auto expect = [&](const Recognition& answer, CurveClass truth, double span, int count) {
+    ++answers;
+    cut += answer.doubt == Doubt::WorkLimit ? 1 : 0;
+    EXPECT_EQ(answer.shape.curve_class, truth) << span << ", " << count;
+    EXPECT_TRUE(answer.doubt == Doubt::None || answer.doubt == Doubt::WorkLimit)
+        << name_of(truth) << " " << span << ", " << count << ": " << name_of(answer.doubt);
+  };
+  for (int count = 20; count < 420; count += 20) {
+    for (const double span : {0.2 * full_turn, 0.5 * full_turn, full_turn}) {
+      expect(along([](double t) { return 25e-3 * Vec2(std::cos(t), std::sin(t)); }, span, count),
+             CurveClass::Circle, span, count);
+      expect(along([](double t) { return Vec2(30e-3 * std::cos(t), 20e-3 * std::sin(t)); }, span,
+                   count),
+             CurveClass::Ellipse, span, count);
+    }
+    for (const double span : {1.0, 2.0}) {
+      expect(along([](double t) { return Vec2(10e-3 * t * t, 20e-3 * t); }, span, count),
+             CurveClass::Parabola, span, count);
+    }
+  }
+  std::cout << "  conics of " << answers << " lengths: cut by the limit of work " << cut << "\n";
 }
 
 }  // namespace
