@@ -42,7 +42,7 @@ std::optional<Pose2> rough_pose(const Curve& artefact, const std::vector<Artefac
     points.emplace_back().position_m = sample.position_m;
   }
   const GivenFit fit = fit_given_class(class_of(artefact), points);
-  if (fit.status != GivenStatus::Fitted && fit.status != GivenStatus::NotDetermined) {
+  if (!has_curve(fit)) {
     return std::nullopt;
   }
   std::optional<Pose2> best;

@@ -11,6 +11,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/given/given_correlation.h"
 #include "node/python/names.h"
 #include "node/python/point_details.h"
 #include "node/python/pose_tuple.h"
@@ -105,6 +106,7 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
   const double* sigmas = sigma.data();
   const auto sigma_count = static_cast<std::size_t>(sigma.size());
   GivenFit fit;
+  ResidualCorrelation correlation;
   {
     const py::gil_scoped_release release;
     for (std::size_t i = 0; i < given.size(); ++i) {
@@ -116,6 +118,7 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
       given[i].covariance_m2 = detail.covariance_m2;
     }
     fit = fit_given_class(curve_class, given);
+    correlation = count_correlation(given, &fit);
   }
   py::dict result;
   result["status"] = std::string(name_of(fit.status));
@@ -125,6 +128,7 @@ py::dict fit_given(const std::string& name, const Array& points, const Array& si
   result["rms"] = fit.rms_m;
   result["peak_to_valley"] = fit.peak_to_valley_m;
   result["sigma"] = fit.sigma_m;
+  result["noise_correlation"] = correlation.length;
   result["dof"] = fit.dof;
   result["bounded"] = fit.bounded;
   result["rival"] = py::none();

@@ -9,8 +9,8 @@
 #include "core/qualification/probe_correction.h"
 #include "core/qualification/probe_residuals.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/given/given_correlation.h"
 #include "core/recognition/posterior/likelihood.h"
-#include "core/recognition/smooth/residual_correlation.h"
 #include "core/recognition/verdict/determined.h"
 #include "node/wire/convert.h"
 
@@ -79,10 +79,6 @@ std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
   return points;
 }
 
-bool is_told(const GivenFit& fit) {
-  return fit.status == GivenStatus::Fitted || fit.status == GivenStatus::NotDetermined;
-}
-
 /// A fit, and the points that it was made from.
 struct PointsFitted {
   std::vector<GivenPoint> points;
@@ -106,7 +102,7 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   for (int round = 0;; ++round) {
     fitted.points = points_of(corrected, left_out);
     fitted.fit = fit_given_class(curve_class, fitted.points, options);
-    const auto curve = probed && is_told(fitted.fit)
+    const auto curve = probed && has_curve(fitted.fit)
                            ? make_curve(curve_class, fitted.fit.shape.values)
                            : std::nullopt;
     if (curve && round == kCorrectionRounds) {
@@ -122,31 +118,6 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
           without_offset(raw[i], *curve, fitted.fit.world_T_curve, options.touched_from);
     }
   }
-}
-
-/// What neighbours' residuals have in common: n of them are worth so many fewer independent ones.
-/// Part and probe are not asked which of them it is. Of a stated noise only what the residuals show
-/// is known to be shared.
-ResidualCorrelation correlation_of(std::span<const ContactRun> runs,
-                                   std::span<const GivenPoint> points, const GivenFit& fit) {
-  FitData data;
-  std::vector<double> residuals;
-  std::size_t i = 0;
-  for (const ContactRun& run : runs) {
-    const std::size_t begin = data.points.size();
-    for (std::size_t k = 0; k < run.samples.size(); ++k, ++i) {
-      if (!points[i].set_aside) {
-        data.points.push_back({points[i].position_m});
-        residuals.push_back(fit.residuals[i].distance_m);
-      }
-    }
-    data.patches.push_back({begin, data.points.size()});
-  }
-  ResidualCorrelation correlation = correlation_of(data, residuals);
-  if (fit.sigma_stated && fit.dof > 0) {
-    correlation.time = 1.0 + std::min(1.0, fit.chi2 / fit.dof) * (correlation.time - 1.0);
-  }
-  return correlation;
 }
 
 double half_extent_m(std::span<const GivenPoint> points) {
@@ -168,7 +139,6 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   auto [points, fit, most_chi2] =
       fit_runs(curve_class, runs, probes, left_out, {options.sigma_m, options.touched_from});
   const bool fitted = fit.status == GivenStatus::Fitted;
-  const bool told = is_told(fit);
   v1::GivenClassAnswer given;
   v1::Recognition& answer = *given.mutable_recognition();
   given.set_status(to_wire(fit.status));
@@ -187,14 +157,12 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
     answer.set_doubt(v1::RECOGNITION_DOUBT_AT_LIMIT);
     return given;
   }
-  if (!told) {
+  if (!has_curve(fit)) {
     answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
     answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
     return given;
   }
-  const ResidualCorrelation correlation = correlation_of(runs, points, fit);
-  fit.covariance *= correlation.time;
-  answer.set_noise_correlation_m(correlation.length);
+  answer.set_noise_correlation_m(count_correlation(points, &fit).length);
   // Deviations are those of the noise and of the probes: of residuals that these cannot have left
   // they say nothing.
   const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || fit.chi2 <= most_chi2;

@@ -66,7 +66,8 @@ struct GivenFit {
   /// Of [shape; x; y; theta]: the Kanatani-Cramer-Rao bound for the noise stated or estimated.
   /// Where the sum of squares rises much less than this bound says, it is widened to what the
   /// residuals allow (given_reach.h). What the pose symmetry leaves free has variance 0. All
-  /// variances are infinite if the noise is neither stated nor can be estimated.
+  /// variances are infinite if the noise is neither stated nor can be estimated. Of noise that no
+  /// two points share: along strokes, count_correlation (given_correlation.h) says what they do.
   ShapePoseCovariance covariance;
   std::vector<GivenResidual> residuals;  ///< in the order of the points
   double rms_m = 0.0;                    ///< root mean square distance of the points in use
@@ -91,6 +92,11 @@ struct GivenFit {
   /// stationary point.
   double stationarity = 0.0;
 };
+
+/// True if there is a curve.
+inline bool has_curve(const GivenFit& fit) {
+  return fit.status == GivenStatus::Fitted || fit.status == GivenStatus::NotDetermined;
+}
 
 /// Minimises the sum of squared orthogonal distances over all curves of the class, to rounding of
 /// the result. Of several minima it gives the likeliest that the starts lead to (given_search.h).

@@ -24,10 +24,11 @@ class CurveModel:
 
     params: the shape parameters, then x, y and theta (radians) of the pose; None until estimate() has succeeded. Where
     estimate() raises, all are as before any fit.
-    covariance: of params; empty until then.
+    covariance: of params; empty until then. Noise that neighbours along a stroke share is counted in it, as by palpate fit --class.
     rms: root mean square distance of the points. peak_to_valley: largest less smallest signed distance.
     sigma: standard deviation of a point, stated or estimated.
-    The last three are NaN if there is no curve.
+    noise_correlation: length of arc along which neighbours in strokes err together; 0 = they do not (white noise), as of touches.
+    The last four are NaN if there is no curve.
     rival: params of another curve of the class, beyond the covariance, that may be the true one as well (through four points go two
     parabolas); None if the points exclude every other one.
     bounded: False if the shape runs to the end of its class, or out of sight, within three standard deviations.
@@ -44,7 +45,7 @@ class CurveModel:
         self.status = ""
         """Outcome of estimate(): "fitted", or why it has not succeeded."""
         self.covariance = np.empty((0, 0))
-        self.rms = self.peak_to_valley = self.sigma = float("nan")
+        self.rms = self.peak_to_valley = self.sigma = self.noise_correlation = float("nan")
         self.rival: np.ndarray | None = None
         self.bounded = True
 
@@ -53,7 +54,9 @@ class CurveModel:
 
         data: an array (n, 2) of touches in any order, or a list of such arrays: each is a patch, one unbroken touch with its points in
         their order along the part. palpate fit --class takes the patches of a file so. Order tells much about cubics: where two arms
-        lie as near to each other as the noise, a stroke keeps to one of them up to the cusp or bend where they meet. Patches whose
+        lie as near to each other as the noise, a stroke keeps to one of them up to the cusp or bend where they meet. And neighbours
+        may err together, by form of the part or drift of the probe: then so many are worth fewer, and the covariance is larger
+        (noise_correlation). Of an array nothing of this is known: its points count as if each had a noise of its own. Patches whose
         points show no order are fitted as touches.
         sigma: standard deviation of a point, one number or one per point; None or 0 = estimated. normals, normal_sigma, covariances: see Recognizer.add.
         Of several patches, normals are in arrays like the points, None in place of an array where a patch has none; all else that is
@@ -72,8 +75,8 @@ class CurveModel:
         self.bounded = fit["bounded"]
         self.rival = np.array([*fit["rival"][0][:letters], *fit["rival"][1]]) if success and fit["rival"] else None
         there_is_one = success or self.status == "not determined"
-        self.rms, self.peak_to_valley, self.sigma = (
-            fit[name] if there_is_one else float("nan") for name in ("rms", "peak_to_valley", "sigma"))
+        self.rms, self.peak_to_valley, self.sigma, self.noise_correlation = (
+            fit[name] if there_is_one else float("nan") for name in ("rms", "peak_to_valley", "sigma", "noise_correlation"))
         return success
 
     def residuals(self, data) -> np.ndarray:

@@ -77,7 +77,8 @@ TEST(ExactPoints, OfAConicAreNeverDoubted) {
   };
   for (int count = 20; count < 420; count += 20) {
     for (const double span : {0.2 * full_turn, 0.5 * full_turn, full_turn}) {
-      expect(along([](double t) { return 25e-3 * Vec2(std::cos(t), std::sin(t)); }, span, count),
+      expect(along([](double t) { return Vec2(25e-3 * std::cos(t), 25e-3 * std::sin(t)); }, span,
+                   count),
              CurveClass::Circle, span, count);
       expect(along([](double t) { return Vec2(30e-3 * std::cos(t), 20e-3 * std::sin(t)); }, span,
                    count),
