@@ -8,18 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
+#include "core/recognition/fit/polynomial_fits.h"
 
 namespace palpate {
 namespace {
 
 /// To which all points and reduced ones agree. Of chi-square: odds are right to a factor of 1.6.
 constexpr double kAgreement = 1.0;
-
-/// How far above a spline's chi-square its rival's may be.
-constexpr double kHopeless = 2.0 * kNegligibleLogOdds;
 
 /// An ellipse or hyperbola at its limit is a parabola.
 PolynomialModel polynomial_model(const ClassFit& fit) {
@@ -146,7 +143,7 @@ ClassFit start_on_all(const ClassFit& fit, const SmoothModel& smooth,
   const bool tips = has_tips(points);
   ClassFit start = fit;
   start.chi2_of_all = start.on_all = true;
-  if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopeless) {
+  if (start.rival && start.rival->chi2 > start.polynomial->chi2 + kHopelessRival) {
     start.rival.reset();
   }
   if (start.implicit && tips) {
@@ -176,7 +173,7 @@ ClassFit refine_parts(ClassFit fit, std::span<const FitPoint> points, const Refi
     };
     refine(*fit.polynomial, effort);
     if (fit.rival &&
-        (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2 + kHopeless)) {
+        (rival == RivalOf::Best || fit.rival->chi2 < fit.polynomial->chi2 + kHopelessRival)) {
       RefineEffort followed = effort;
       followed.seek_feet = false;
       refine(*fit.rival, followed);

@@ -5,18 +5,23 @@
 #include <optional>
 
 #include "core/curves/algebraic/canonical_conic.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/fit/starts/polynomial_seeds.h"
 
 namespace palpate {
+
+/// How far above a spline's chi-square its rival's may be: odds of a million, and as much again
+/// that the prior may leave.
+inline constexpr double kHopelessRival = 2.0 * kNegligibleLogOdds;
 
 struct PolynomialFits {
   std::optional<PolynomialFit> parabola;
   std::optional<PolynomialFit> cubical_parabola;
   std::optional<PolynomialFit> semi_cubical_parabola;
   std::optional<PolynomialFit> cubic_spline;
-  /// The spline's optimum on the other side of c = 0, if there is one; of single touches, the
-  /// second best of all.
+  /// The spline's second best optimum, on the other side of c = 0 or in another valley, if one was
+  /// found.
   std::optional<PolynomialFit> rival;
   /// For a few of the points: the nearest conic, the only start.
   std::optional<ConicCoefficients> conic;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
@@ -184,6 +185,80 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
   return pair;
 }
 
+/// The spline on the other side of c = 0 of one that is refined (twin_of): a walk beside a sharp
+/// bend may have ended too far from it to tell.
+PolynomialFit twin_of(const PolynomialFit& fit) {
+  const PolynomialCoefficients& given = fit.coefficients;
+  const Vec2 across = given.col(3);
+  const double vertex =
+      -0.5 * cross(across, Vec2(given.col(1))) / cross(across, Vec2(given.col(2)));
+  PolynomialFit twin = fit;
+  PolynomialCoefficients& c = twin.coefficients;
+  c = PolynomialCurve2{given}.shifted(vertex).coefficients;
+  const double moved = 4.0 / 3.0 * c.col(1).dot(across) / across.squaredNorm();
+  c.col(0) -= moved * c.col(2);
+  c.col(1) = -c.col(1);
+  for (double& t : twin.t) {
+    const double from_vertex = t - vertex;
+    t = std::copysign(std::sqrt(std::max(from_vertex * from_vertex + moved, 0.0)), from_vertex);
+  }
+  normalise_parameter(PolynomialModel::CubicSpline, &twin);
+  return twin;
+}
+
+/// Between optima that the data leave nearly as probable the prior chooses, and one that was not
+/// seen leaves another shape certain: where no conic fits, valleys whose walks end not far above
+/// the deepest one's are refined too, and the other side of c = 0, if its walk has shown none, is
+/// sought from the spline found. Of all the two best remain, each once: at their very ends, as on
+/// the way one valley may look like two, and what nothing touches so takes no other's place.
+void add_rivals(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
+                WorkBudget& work) {
+  const auto& seeds = fits->seeds.cubic_spline;
+  const double hopeless = std::min(out_of_reach, fits->cubic_spline->chi2 + kHopelessRival);
+  const auto is_known = [&](const PolynomialFit& fit) {
+    return is_same_valley(fit, *fits->cubic_spline) ||
+           (fits->rival && is_same_valley(fit, *fits->rival));
+  };
+  std::vector<PolynomialFit> found;
+  const auto keep = [&](PolynomialFit fit) {
+    if (fit.chi2 < hopeless && !is_known(fit)) {
+      found.push_back(std::move(fit));
+    }
+  };
+  for (std::size_t i = 1;
+       i < seeds.size() && work.allows() && seeds[i].chi2 <= seeds.front().chi2 + kHopelessRival;
+       ++i) {
+    keep(refined(seeds[i], reduced, hopeless, work));
+  }
+  const PolynomialFit twin = twin_of(*fits->cubic_spline);
+  if ((!fits->rival || fits->rival->chi2 > hopeless) && twin.coefficients.allFinite() &&
+      work.allows()) {
+    keep(refine_polynomial(PolynomialModel::CubicSpline, reduced.points, twin, kSurfacePoints,
+                           coarse(hopeless), work));
+  }
+  if (found.empty()) {
+    return;
+  }
+  found.push_back(*fits->cubic_spline);
+  if (fits->rival) {
+    found.push_back(*fits->rival);
+  }
+  std::sort(found.begin(), found.end(),
+            [](const PolynomialFit& a, const PolynomialFit& b) { return a.chi2 < b.chi2; });
+  SplinePair pair;
+  for (auto fit = found.begin(); fit != found.end() && !pair.rival && work.allows(); ++fit) {
+    PolynomialFit there = refine_polynomial(PolynomialModel::CubicSpline, reduced.points, *fit,
+                                            kSurfacePoints, kOnReducedEffort, work);
+    if (is_touchable(there, reduced)) {
+      take(std::move(there), &pair);
+    }
+  }
+  if (pair.best) {
+    fits->cubic_spline = std::move(pair.best);
+    fits->rival = std::move(pair.rival);
+  }
+}
+
 }  // namespace
 
 PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double out_of_reach,
@@ -315,6 +390,9 @@ void refine_every_seed(const FitData& reduced, double out_of_reach, PolynomialFi
     walk_more(reduced, fits->cubic_spline->chi2, &fits->seeds, work);
   }
   improve(&fits->cubic_spline, fits->seeds.cubic_spline);
+  if (!conic_fits && fits->cubic_spline && fits_well(fits->cubic_spline->chi2, residuals)) {
+    add_rivals(reduced, out_of_reach, fits, work);
+  }
   start_semi_cubical_from_spline(reduced, out_of_reach, fits, work);
 }
 

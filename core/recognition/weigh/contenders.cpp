@@ -98,6 +98,38 @@ void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
   fit = std::move(found);
 }
 
+/// Takes contenders->coarse of a spline to the optimum that all points have come to, where that is
+/// another than the reduced points' own: about a sharp bend these may fit a curve that all points
+/// do not. Evidence is counted from chi-square at the optimum. From one valley's, with what all
+/// points leave in another, the difference of the two would count twice.
+void follow_all_points(CurveClass i, const EvidenceContext& context, Contenders* contenders) {
+  const ClassFit& fit = *contenders->fits[i];
+  ClassFit& coarse = *contenders->coarse[i];
+  const auto off = [&](const ClassFit& told) {
+    return std::abs(told.chi2 + context.arcs.smooth.chi2 - fit.chi2);
+  };
+  if (i != CurveClass::CubicSpline || !fit.on_all || !std::isfinite(fit.chi2) ||
+      !(off(coarse) > kLeastError) || !context.work.allows()) {
+    return;
+  }
+  const FitData& points = points_of(coarse, context.reduced);
+  ClassFit there = placed_on_reduced(fit, points, context.work);
+  there.rival.reset();
+  there.own_points = coarse.own_points;
+  there = settled(there, points, RivalOf::Best, context.work);
+  if (!(off(there) < off(coarse) - kLeastError)) {
+    return;
+  }
+  coarse = std::move(there);
+  auto& evidence = contenders->evidences.classes[i];
+  const auto before = std::move(evidence);
+  weigh_on_reduced(i, context, contenders);
+  if (before && before->prior_mode_sought) {
+    evidence = evidence ? at_better_mode(*std::move(evidence), *before)
+                        : counted_from(coarse.chi2 / context.likelihood.inflation(), *before);
+  }
+}
+
 /// Classes that end at their limit, or worse than it, are what it is.
 void take_limits(ClassFits* fits) {
   for (const CurveClass curve_class : kClassesWithLimit) {
@@ -201,6 +233,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
         if (b == CurveClass::CubicSpline && !trusted) {
           seek_cusp(context, &contenders);
         }
+        follow_all_points(b, context, &contenders);
       }
       changed = true;
       continue;
@@ -215,6 +248,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
           work.allows()) {
         fit = with_chi2_of_all(settle(i, RivalOf::Other, reduced, &contenders, work), reduced,
                                trusted, smooth, data, work);
+        follow_all_points(i, context, &contenders);
         changed = true;
       }
     }
@@ -240,6 +274,7 @@ Contenders decided(Contenders contenders, const EvidenceContext& context, double
     }
     fit = polished(settle(i, RivalOf::Best, reduced, &contenders, context.work), arcs.smooth,
                    arcs.data, context.work);
+    follow_all_points(i, context, &contenders);
     take_limits(&contenders.fits);
   }
 }
