@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "core/recognition/fit/cusp_of_spline.h"
@@ -122,7 +123,7 @@ void follow_all_points(CurveClass i, const EvidenceContext& context, Contenders*
   }
   coarse = std::move(there);
   auto& evidence = contenders->evidences.classes[i];
-  const auto before = std::move(evidence);
+  const auto before = std::exchange(evidence, std::nullopt);
   weigh_on_reduced(i, context, contenders);
   if (before && before->prior_mode_sought) {
     evidence = evidence ? at_better_mode(*std::move(evidence), *before)
