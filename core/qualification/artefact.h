@@ -40,6 +40,12 @@ struct ArtefactSample {
 /// right (a bore is touched).
 using MaterialSign = int;
 
+/// What is qualified on: the artefact, and on which side of it the material lies.
+struct Artefact {
+  const Curve& curve;
+  MaterialSign material = 1;
+};
+
 /// Distance of a sample from the artefact at a pose, and how it changes.
 struct SampleOnArtefact {
   double distance_m = 0.0;  ///< out of the material, minus the nominal tip radius

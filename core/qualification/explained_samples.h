@@ -1,7 +1,6 @@
 // The samples of an artefact's recordings, placed on it, and which of them are spikes.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -10,12 +9,6 @@
 #include "core/qualification/offset_fit.h"
 
 namespace palpate {
-
-/// What is qualified on: the artefact, and on which side of it the material lies.
-struct Artefact {
-  const Curve& curve;
-  MaterialSign material = 1;
-};
 
 /// The samples of all recordings in one sequence.
 struct Ground {

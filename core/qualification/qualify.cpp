@@ -143,7 +143,8 @@ double largest_scatter_m(const Artefact& artefact, const std::vector<Pose2>& pos
 struct WeighedOffset {
   OffsetEvidence evidence;
   double lag_variance_m2 = 0.0;
-  Estimate setup_m;  ///< 0 of one set-up
+  Estimate setup_m;              ///< 0 of one set-up
+  bool both_directions = false;  ///< of travel: a lag shows
 };
 
 /// Takes the order of the offset, and its noise, from its evidence, and fits offset, lag and
@@ -159,12 +160,12 @@ std::optional<WeighedOffset> weighed(const Artefact& artefact, bool same_setup,
     return OffsetModel{std::move(residual_m), about.flat, about.basis,      on->ground.strokes,
                        on->ground.arc_m,      on->used,   on->least_scale_m};
   };
-  const bool both_directions = runs_both_ways(samples);
   // The prior that served to compare the orders must not pull the result towards 0. Ten times as
   // wide, it reduces a harmonic of that size by at most a tenth of its standard deviation.
   constexpr double kWide = 10.0;
   constexpr int kRounds = 2;  // the second has a lag, if there are harmonics to show it
   WeighedOffset result;
+  result.both_directions = runs_both_ways(samples);
   for (int round = 0; round < kRounds; ++round) {
     const OffsetResiduals about = residuals(on->highest_order);
     const Eigen::Index known = offset_coefficients(unknowns.offset.order);
@@ -173,7 +174,7 @@ std::optional<WeighedOffset> weighed(const Artefact& artefact, bool same_setup,
     if (!evidence) return std::nullopt;
     result.evidence = *std::move(evidence);
     set_order(unknowns, result.evidence.order);
-    const bool lag = both_directions && result.evidence.order > 0;
+    const bool lag = result.both_directions && result.evidence.order > 0;
     unknowns.lag_m = lag ? std::optional(unknowns.lag_m.value_or(0.0)) : std::nullopt;
     const KnownNoise noise{result.evidence.sigma_m.value, result.evidence.coherence,
                            on->ground.strokes, on->ground.arc_m, on->used};
@@ -297,7 +298,7 @@ Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> 
   result.probe = with_estimated_tip(stated);
   const double estimated_m = result.probe.tip_radius_m - stated.tip_radius_m;
   result.tip_is_estimated = estimated_m > 0.0;
-  result.both_directions = runs_both_ways(found->ground.samples);
+  result.both_directions = told->both_directions;
   result.poses = found->unknowns.poses;
   result.order_probabilities = told->evidence.probabilities;
   result.bore = on.material < 0;

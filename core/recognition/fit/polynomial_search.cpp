@@ -137,11 +137,9 @@ struct SplinePair {
 
 /// On which side of c = 0 a spline lies.
 bool has_loop(const PolynomialCoefficients& c) {
-  // About the vertex, where the curve stands still along the axis, travel across it is c.
-  const Vec2 across = c.col(3);
-  const double along_by_t = cross(across, Vec2(c.col(1)));
-  const double along_by_t2 = cross(across, Vec2(c.col(2)));
-  return first_derivative(c, -0.5 * along_by_t / along_by_t2).dot(across) < 0.0;
+  // About the vertex travel across the axis is c.
+  const auto vertex = vertex_of(c);
+  return vertex && first_derivative(c, *vertex).dot(c.col(3)) < 0.0;
 }
 
 /// Ended in the same valley, on the same side of c = 0, though not at its very end.
@@ -186,24 +184,25 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
 }
 
 /// The spline on the other side of c = 0 of one that is refined (twin_of): a walk beside a sharp
-/// bend may have ended too far from it to tell.
-PolynomialFit twin_of(const PolynomialFit& fit) {
-  const PolynomialCoefficients& given = fit.coefficients;
-  const Vec2 across = given.col(3);
-  const double vertex =
-      -0.5 * cross(across, Vec2(given.col(1))) / cross(across, Vec2(given.col(2)));
+/// bend may have ended too far from it to tell. nullopt where it is a parabola.
+std::optional<PolynomialFit> twin_of(const PolynomialFit& fit) {
+  const auto vertex = vertex_of(fit.coefficients);
+  if (!vertex) {
+    return std::nullopt;
+  }
   PolynomialFit twin = fit;
   PolynomialCoefficients& c = twin.coefficients;
-  c = PolynomialCurve2{given}.shifted(vertex).coefficients;
+  c = PolynomialCurve2{fit.coefficients}.shifted(*vertex).coefficients;
+  const Vec2 across = c.col(3);
   const double moved = 4.0 / 3.0 * c.col(1).dot(across) / across.squaredNorm();
   c.col(0) -= moved * c.col(2);
   c.col(1) = -c.col(1);
   for (double& t : twin.t) {
-    const double from_vertex = t - vertex;
+    const double from_vertex = t - *vertex;
     t = std::copysign(std::sqrt(std::max(from_vertex * from_vertex + moved, 0.0)), from_vertex);
   }
   normalise_parameter(PolynomialModel::CubicSpline, &twin);
-  return twin;
+  return c.allFinite() ? std::optional(std::move(twin)) : std::nullopt;
 }
 
 /// Between optima that the data leave nearly as probable the prior chooses, and one that was not
@@ -230,11 +229,11 @@ void add_rivals(const FitData& reduced, double out_of_reach, PolynomialFits* fit
        ++i) {
     keep(refined(seeds[i], reduced, hopeless, work));
   }
-  const PolynomialFit twin = twin_of(*fits->cubic_spline);
-  if ((!fits->rival || fits->rival->chi2 > hopeless) && twin.coefficients.allFinite() &&
-      work.allows()) {
-    keep(refine_polynomial(PolynomialModel::CubicSpline, reduced.points, twin, kSurfacePoints,
-                           coarse(hopeless), work));
+  if (!fits->rival || fits->rival->chi2 > hopeless) {
+    if (const auto twin = twin_of(*fits->cubic_spline); twin && work.allows()) {
+      keep(refine_polynomial(PolynomialModel::CubicSpline, reduced.points, *twin, kSurfacePoints,
+                             coarse(hopeless), work));
+    }
   }
   if (found.empty()) {
     return;
