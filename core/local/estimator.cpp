@@ -6,6 +6,7 @@
 #include "core/local/circle_estimator.h"
 #include "core/local/finite_difference_estimator.h"
 #include "core/local/jet_estimator.h"
+#include "core/local/two_round_estimator.h"
 
 namespace palpate {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/local/local_status.h"
-#include "core/local/two_round_estimator.h"
 
 namespace palpate {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 

@@ -5,8 +5,11 @@
 #include <vector>
 
 #include "core/curves/curve.h"
+#include "core/curves/shape_parameters.h"
 #include "core/qualification/probe_character.h"
-#include "core/recognition/recognizer.h"
+#include "core/recognition/localized_contact.h"
+#include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/sample_detail.h"
 
 namespace palpate {
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "core/local/aligned_frame.h"
 #include "core/local/graph_geometry.h"
 #include "core/local/legendre_curve.h"
 #include "core/local/stream/higher_terms.h"

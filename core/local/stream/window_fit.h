@@ -3,9 +3,7 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
-#include "core/local/aligned_frame.h"
 #include "core/local/local_status.h"
 #include "core/local/stream/node_pyramid.h"
 

@@ -7,6 +7,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/feet_in_order.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
+#include "core/recognition/fit/polynomial_search.h"
 #include "core/recognition/fit/starts/algebraic_fit.h"
 #include "core/recognition/fit/starts/few_points.h"
 #include "core/recognition/fit/warm_start.h"

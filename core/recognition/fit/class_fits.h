@@ -14,9 +14,7 @@
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"
-#include "core/recognition/fit/polynomial_search.h"
 #include "core/recognition/samples/fit_data.h"
-#include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/smooth/smooth_model.h"
 
 namespace palpate {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/recognition/fit/class_fits.h"
+#include "core/recognition/fit/polynomial_fits.h"
 
 namespace palpate {
 

@@ -6,6 +6,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"

@@ -7,6 +7,7 @@
 #include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/fit/starts/algebraic_fit.h"
+#include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"

@@ -16,6 +16,7 @@
 #include <span>
 
 #include "core/numerics/probability/negligible.h"
+#include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/curves/curve.h"
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 

@@ -7,7 +7,7 @@
 
 #include "core/local/spikes/block_survey.h"
 #include "core/numerics/work_budget.h"
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 
