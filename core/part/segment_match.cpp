@@ -19,13 +19,13 @@ namespace {
 constexpr int kFewestNoiseDegrees = 4;
 
 /// The patches without spikes, and a flag per given sample that says whether it was a spike.
-struct CleanPatches {
+struct Despiked {
   std::vector<StoredPatch> patches;
   std::vector<std::vector<bool>> is_spike;
 };
 
-CleanPatches clean_patches(std::span<const StoredPatch> patches, double false_alarm) {
-  CleanPatches clean;
+Despiked despiked(std::span<const StoredPatch> patches, double false_alarm) {
+  Despiked clean;
   for (const StoredPatch& patch : patches) {
     WorkBudget unbounded;
     clean.is_spike.push_back(spikes_of(patch.samples, false_alarm, unbounded));
@@ -82,7 +82,7 @@ class Match {
       : part_(part),
         given_(patches),
         options_(options),
-        clean_(clean_patches(patches, spike_probability(patches, options))) {
+        clean_(despiked(patches, spike_probability(patches, options))) {
     smooth();
     if (take_back_spikes()) {
       smooth();
@@ -271,7 +271,7 @@ class Match {
   const ClosedSpline& part_;
   std::span<const StoredPatch> given_;
   SegmentMatchOptions options_;
-  CleanPatches clean_;
+  Despiked clean_;
   FitData data_;
   SmoothModel smooth_;
   bool noise_known_ = true;

@@ -41,7 +41,7 @@ class NearestPlace {
 
  private:
   // At either end there may be more by three tenths of what there was: a new search is made before
-  // there is a quarter more (recognizer.cpp).
+  // there is a quarter more (counted/last_weighing.cpp).
   // Steps of a fortieth: a bend that is sharper has its arms told apart by the points themselves.
   static constexpr std::size_t kPlaces = 129;
   static constexpr double kFarthest = 1.6;  // in half ranges of the feet

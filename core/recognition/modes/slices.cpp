@@ -76,9 +76,8 @@ struct Walk {
 };
 
 /// Sums of a normal law's density this far apart are off by 2 exp(-2 pi^2 / apart^2), half a
-/// thousandth.
-/// Two of them pass three deviations, beyond which it has 0.3 % of its mass: what odds are told to
-/// is seven times that (kSettledPotential).
+/// thousandth. Two of them pass three deviations, beyond which it has 0.3 % of its mass: what odds
+/// are told to is seven times that (kSettledPotential).
 constexpr Walk kWalkForMass{1.55, 3.0, kSettledPotential, false};
 
 /// Of its second moment a normal law has 0.3 % beyond the end.

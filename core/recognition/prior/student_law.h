@@ -7,9 +7,8 @@
 
 namespace palpate {
 
-/// Student's law of `freedom` degrees of freedom about 0, of density ~ (1 + (x /
-/// scale)^2)^(-(freedom
-/// + 1) / 2).
+/// Student's law of `freedom` degrees of freedom about 0. Its density goes as
+/// (1 + (x / scale)^2)^(-(freedom + 1) / 2).
 struct StudentLaw {
   int freedom = 1;
   double scale = 1.0;

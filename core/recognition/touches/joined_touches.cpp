@@ -30,8 +30,9 @@ constexpr double kTurn = 0.6;  // rad
 constexpr double kLeastStep = 20.0;
 
 /// A step of the path that turns by no more tells the direction of a touch on it: to half of that,
-/// even if all of it is a corner at the touch. The rounds that remove tips (weigh/sides.cpp) start
-/// from there; the curve of the centres, which turns about an edge with them, may know none. [rad]
+/// even if all of it is a corner at the touch. The rounds that remove tips (weigh/fit_way.cpp)
+/// start from there; the curve of the centres, which turns about an edge with them, may know none.
+/// [rad]
 constexpr double kToldTurn = 1.2;
 
 /// Touches used to fit a curve for the order: the fewest whose arms one search tells. Twice as many

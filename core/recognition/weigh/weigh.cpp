@@ -80,9 +80,8 @@ std::optional<Placed> best_on_all(const Contenders& contenders, const EvidenceCo
 }
 
 /// Shape, pose and covariance of what is not negligible, and of the best class in any case: where
-/// it is out for some spikes, its residuals tell which.
-/// On all points where it was refined there, otherwise on the reduced ones. `before`: a class
-/// placed already.
+/// it is out for some spikes, its residuals tell which. On all points where it was refined there,
+/// otherwise on the reduced ones. `before`: a class placed already.
 ByClass<std::optional<CanonicalFit>> placed_canonically(const Contenders& contenders,
                                                         const ClassProbabilities& probabilities,
                                                         const EvidenceContext& context,
