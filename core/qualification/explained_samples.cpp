@@ -10,9 +10,6 @@
 namespace palpate {
 namespace {
 
-/// The bending of a stylus and the three legs of a trigger sensor cause lobes of order 2, 3 and 6;
-/// their overtones fall off.
-constexpr int kHighestOrder = 8;
 /// Probability that a recording without spikes loses a sample to spike detection.
 constexpr double kFalseSpikes = 0.01;
 

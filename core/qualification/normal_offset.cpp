@@ -5,14 +5,12 @@
 
 namespace palpate {
 
-int offset_coefficients(int order) { return 1 + 2 * std::max(order - 1, 0); }
-
 Eigen::RowVectorXd offset_basis(double phi, int order) {
   Eigen::RowVectorXd basis(offset_coefficients(order));
   basis[0] = 1.0;
   for (int k = 2; k <= order; ++k) {
-    basis[2 * k - 3] = std::cos(k * phi);
-    basis[2 * k - 2] = std::sin(k * phi);
+    basis[first_offset_of(k)] = std::cos(k * phi);
+    basis[first_offset_of(k) + 1] = std::sin(k * phi);
   }
   return basis;
 }
@@ -21,8 +19,8 @@ Eigen::RowVectorXd offset_basis_slope(double phi, int order) {
   Eigen::RowVectorXd slope(offset_coefficients(order));
   slope[0] = 0.0;
   for (int k = 2; k <= order; ++k) {
-    slope[2 * k - 3] = -k * std::sin(k * phi);
-    slope[2 * k - 2] = k * std::cos(k * phi);
+    slope[first_offset_of(k)] = -k * std::sin(k * phi);
+    slope[first_offset_of(k) + 1] = k * std::cos(k * phi);
   }
   return slope;
 }
@@ -31,7 +29,7 @@ Eigen::RowVectorXd offset_basis_bend(double phi, int order) {
   Eigen::RowVectorXd bend = -offset_basis(phi, order);
   bend[0] = 0.0;
   for (int k = 2; k <= order; ++k) {
-    bend.segment<2>(2 * k - 3) *= k * k;
+    bend.segment<2>(first_offset_of(k)) *= k * k;
   }
   return bend;
 }
@@ -39,8 +37,8 @@ Eigen::RowVectorXd offset_basis_bend(double phi, int order) {
 double largest_lobe_m(const NormalOffset& offset) {
   double largest = 0.0;
   for (int k = 2; k <= offset.order; ++k) {
-    largest = std::max(
-        largest, std::hypot(offset.coefficients_m[2 * k - 3], offset.coefficients_m[2 * k - 2]));
+    largest = std::max(largest, std::hypot(offset.coefficients_m[first_offset_of(k)],
+                                           offset.coefficients_m[first_offset_of(k) + 1]));
   }
   return largest;
 }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 
+#include "core/recognition/coherent/offset_harmonics.h"
+
 namespace palpate {
 
 /// offset(phi) = c_0 + sum over k = 2 ... order of c_k cos k phi + s_k sin k phi. phi is the
@@ -15,9 +17,6 @@ struct NormalOffset {
   Eigen::VectorXd coefficients_m = Eigen::VectorXd::Zero(1);  ///< [c_0; c_2; s_2; c_3; ...] [m]
   Eigen::MatrixXd covariance_m2 = Eigen::MatrixXd::Zero(1, 1);
 };
-
-/// Number of coefficients up to `order`.
-int offset_coefficients(int order);
 
 /// The factor of each coefficient at `phi`, and its first and second derivatives by phi.
 Eigen::RowVectorXd offset_basis(double phi, int order);

@@ -59,10 +59,6 @@ std::vector<double> harmonic_sizes() {
   return sizes;
 }
 
-/// Size of a harmonic relative to that of order 2. The overtones of an offset without sharp bends
-/// fall off with the square of their order.
-double overtone(int order) { return 4.0 / (order * order); }
-
 /// Adds the cells of all orders for one coherence.
 void add_cells(const OffsetModel& model, int highest, double log_ratio, double log_length,
                std::vector<Cell>& cells) {

@@ -26,12 +26,12 @@ std::optional<Curve> curve_of(const Recognition& answer) {
              : make_curve(answer.shape.curve_class, answer.shape.values);
 }
 
-double half_extent(std::span<const ProbedPatch> patches) {
+Eigen::AlignedBox2d box_of(std::span<const ProbedPatch> patches) {
   Eigen::AlignedBox2d box;
   for (const ProbedPatch& patch : patches) {
     for (const ContactSample& sample : patch.samples) box.extend(sample.position_m);
   }
-  return box.isEmpty() ? 0.0 : 0.5 * box.diagonal().norm();
+  return box;
 }
 
 /// Mean squares of what probes do to samples and no noise of one sample holds. [m^2]
@@ -131,7 +131,7 @@ void add_probes(std::span<const ProbedPatch> patches, const RecognizerOptions& o
   answer->covariance += more;
   answer->hypotheses.front().covariance += more;
   if (answer->status == RecognitionStatus::Recognized &&
-      !is_determined(answer->shape, answer->covariance, half_extent(patches),
+      !is_determined(answer->shape, answer->covariance, half_extent_m(box_of(patches)),
                      options.determined_fraction)) {
     answer->status = RecognitionStatus::Ambiguous;
     answer->doubt = Doubt::Undetermined;

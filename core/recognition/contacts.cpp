@@ -101,23 +101,10 @@ void keep_most_informative(std::vector<LocalizedContact>* found) {
   std::erase_if(*found, [&](const LocalizedContact&) { return !kept[i++]; });
 }
 
-/// Noise of the stored samples, each a mean of several contacts; 0 if unknown. [m]
-double sigma_of_samples(const StoredPatch& patch, double default_sigma_m) {
-  double squares = 0.0;
-  for (const StoredSample& sample : patch.samples) {
-    const double sigma = sigma_m_of(sample, default_sigma_m);
-    if (!(sigma > 0.0)) {
-      return 0.0;
-    }
-    squares += sigma * sigma / sample.weight;
-  }
-  return std::sqrt(squares / static_cast<double>(patch.samples.size()));
-}
-
 /// Windows side by side, as many as fit, in the middle of the patch.
 std::vector<LocalizedContact> fixed_windows(const StoredPatch& patch, EstimatorOptions estimator,
                                             double default_sigma_m, double signed_radius) {
-  estimator.sigma_m = sigma_of_samples(patch, default_sigma_m);
+  estimator.sigma_m = std::sqrt(stated_variance_m2(patch.samples, default_sigma_m).value_or(0.0));
   std::vector<Vec2> positions;
   positions.reserve(patch.samples.size());
   for (std::size_t i = 0; i < patch.samples.size(); ++i) {

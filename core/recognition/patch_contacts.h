@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/recognition/contacts.h"
+#include "core/recognition/samples/cleaned/clean_patches.h"
 
 namespace palpate {
 

@@ -14,12 +14,6 @@ namespace {
 /// terms' sizes, and two such coefficients occur in a term.
 constexpr double kConicRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
-/// u v - x y, rounded once.
-double difference_of_products(double u, double v, double x, double y) {
-  return static_cast<double>(DoubleDouble(u) * DoubleDouble(v) +
-                             DoubleDouble(-x) * DoubleDouble(y));
-}
-
 /// The equation in the axes of its quadratic part:
 /// large u^2 + small v^2 + linear_u u + linear_v v + constant = 0.
 struct PrincipalForm {

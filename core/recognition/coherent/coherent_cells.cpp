@@ -8,10 +8,6 @@
 namespace palpate {
 namespace {
 
-/// Size of a harmonic relative to the second: a deviation without sharp bends has harmonics that
-/// fall off with the square of their order.
-constexpr double overtone(int order) { return order == 0 ? 1.0 : 4.0 / (order * order); }
-
 /// Expected offset for a drift, by the same law: a drift of length L corresponds to the harmonic of
 /// order 1 / L (L in half extents).
 double expected_offset(const Drift& drift) {
@@ -51,7 +47,7 @@ template <int Highest>
 std::optional<OffsetCells<Highest>> offset_cells(const LeftByDrift<Highest>& left,
                                                  const OffsetSize& size, const NoiseLaw& noise,
                                                  double scatter) {
-  constexpr int kOffsets = offsets_to(Highest);
+  constexpr int kOffsets = offset_coefficients(Highest);
   const Offsets<Highest> deviations = size.deviations.template head<kOffsets>();
   OffsetMatrix<Highest> matrix =
       deviations.asDiagonal() * left.information * deviations.asDiagonal();

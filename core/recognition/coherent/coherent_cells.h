@@ -15,9 +15,10 @@
 namespace palpate {
 
 template <int Highest>
-using Offsets = Eigen::Matrix<double, offsets_to(Highest), 1>;
+using Offsets = Eigen::Matrix<double, offset_coefficients(Highest), 1>;
 template <int Highest>
-using OffsetMatrix = Eigen::Matrix<double, offsets_to(Highest), offsets_to(Highest)>;
+using OffsetMatrix =
+    Eigen::Matrix<double, offset_coefficients(Highest), offset_coefficients(Highest)>;
 using Unknowns = Eigen::Matrix<double, kUnknowns, 1>;
 using UnknownsMatrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
 

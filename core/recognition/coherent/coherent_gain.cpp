@@ -21,7 +21,7 @@ std::optional<Left> left_by(const std::vector<CoherentStep>& steps, const Drift&
   if (!cholesky(information, &lower)) {
     return std::nullopt;
   }
-  constexpr int kOffsets = offsets_to(kHighestOfClasses);
+  constexpr int kOffsets = offset_coefficients(kHighestOfClasses);
   constexpr int kOthers = 1 + kOffsets;
   Eigen::Matrix<double, kUnknowns, kOthers, Eigen::RowMajor> half =
       white.sums.topRightCorner<kUnknowns, kOthers>();

@@ -12,7 +12,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kOffsets = offsets_to(kHighestOrder);
+constexpr int kOffsets = offset_coefficients(kHighestOrder);
 
 /// A row of so many orders costs twice one of those that tell classes apart.
 constexpr std::size_t kRowsOfMoment = 2;

@@ -9,8 +9,8 @@ namespace palpate {
 namespace {
 
 /// 1, cos 2 phi, sin 2 phi, cos 3 phi ... for the normal's direction phi.
-Eigen::Matrix<double, offsets_to(kHighestOrder), 1> offset_row(const Vec2& normal) {
-  Eigen::Matrix<double, offsets_to(kHighestOrder), 1> row;
+Eigen::Matrix<double, offset_coefficients(kHighestOrder), 1> offset_row(const Vec2& normal) {
+  Eigen::Matrix<double, offset_coefficients(kHighestOrder), 1> row;
   row[0] = 1.0;
   double cosine = normal.x();
   double sine = normal.y();
@@ -56,7 +56,7 @@ std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitDa
                                 : normal.dot(left_of(position(curve, fitted.t)));
     step.row.head<kUnknowns>() /= sigma * reduced.scale;
     step.row[kResidualColumn] = at.residual;
-    step.row.tail<offsets_to(kHighestOrder)>() = offset_row(fitted.normal);
+    step.row.tail<offset_coefficients(kHighestOrder)>() = offset_row(fitted.normal);
     steps.push_back(step);
   }
   return steps;

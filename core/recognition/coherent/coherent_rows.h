@@ -7,6 +7,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/coherent/markov_drift.h"
+#include "core/recognition/coherent/offset_harmonics.h"
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/modes/class_evidence.h"
 #include "core/recognition/posterior/likelihood.h"
@@ -14,25 +15,16 @@
 
 namespace palpate {
 
-/// Orders of the offset, a Fourier series of the normal's direction: 0 (the constant) and 2 to a
-/// highest one. Order 1 is a shift of the frame. Probes have lobes up to this order.
-inline constexpr int kHighestOrder = 8;
 /// Up to this order lobes look like the difference of two classes, which bends twice around like a
 /// conic's own lobes, or as a cubic does.
 inline constexpr int kHighestOfClasses = 4;
-
-/// Number of coefficients up to an order.
-constexpr int offsets_to(int highest) { return 2 * highest - 1; }
 
 /// A row holds: derivatives by shape and pose, the residual, derivatives by the offset's
 /// coefficients. Lower orders are a prefix of the row.
 inline constexpr int kUnknowns = 6;
 inline constexpr int kResidualColumn = kUnknowns;
-constexpr int columns_to(int highest) { return kUnknowns + 1 + offsets_to(highest); }
+constexpr int columns_to(int highest) { return kUnknowns + 1 + offset_coefficients(highest); }
 using CoherentRow = Eigen::Matrix<double, columns_to(kHighestOrder), 1>;
-
-/// Index of the first coefficient of an order (cosine); the sine follows. The constant has one.
-constexpr int first_offset_of(int order) { return order == 0 ? 0 : 2 * order - 3; }
 
 struct CoherentStep {
   DriftStep at;

@@ -28,6 +28,26 @@ struct PatchContext {
   /// The samples are centres of a round tip of this radius; 0 = surface points. [m]
   double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
+
+  bool operator==(const PatchContext&) const = default;
 };
+
+/// Whether samples continue a stroke. What is said of its tip holds for all of it: another radius,
+/// or the other side, is of another stroke that has the same number.
+inline bool is_of_one_stroke(const PatchContext& stroke, const PatchContext& more) {
+  const bool same_side = stroke.material_side == more.material_side ||
+                         stroke.material_side == MaterialSide::Unspecified ||
+                         more.material_side == MaterialSide::Unspecified;
+  return stroke.probe == more.probe && stroke.patch == more.patch &&
+         stroke.tip_radius_m == more.tip_radius_m && same_side;
+}
+
+/// What is said of a stroke that samples continue: they may state a side that nothing stated yet.
+inline PatchContext continued(PatchContext stroke, const PatchContext& more) {
+  if (stroke.material_side == MaterialSide::Unspecified) {
+    stroke.material_side = more.material_side;
+  }
+  return stroke;
+}
 
 }  // namespace palpate

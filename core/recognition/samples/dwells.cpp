@@ -36,8 +36,8 @@ bool goes_back_and_forth(std::span<const SampleBlock> blocks) {
 
 constexpr std::size_t kBlock = 8;
 
-/// Fewer block means show no order. Six evenly spaced ones have the ratio 6 / 35.
-constexpr std::size_t kFewestMeans = 6;
+/// Fewer blocks show no order by their means. Six evenly spaced ones have the ratio 6 / 35.
+constexpr std::size_t kFewestBlocks = 6;
 
 /// Mean square distance from their mean that samples with their stated noise have, at most, where
 /// they are of one place. [m^2] nullopt if the noise of any is not stated.
@@ -45,15 +45,8 @@ std::optional<double> most_square_of_noise(std::span<const StoredSample> samples
                                            double default_sigma_m) {
   // In units of the spread of pure noise. Motion over six standard deviations gives as much.
   constexpr double kSpread = 1.6;
-  double stated = 0.0;
-  for (const StoredSample& sample : samples) {
-    const double sigma_m = sigma_m_of(sample, default_sigma_m);
-    if (!(sigma_m > 0.0)) {
-      return std::nullopt;
-    }
-    stated += sigma_m * sigma_m / sample.weight;
-  }
-  return 2.0 * kSpread * kSpread * stated / static_cast<double>(samples.size());
+  const auto stated = stated_variance_m2(samples, default_sigma_m);
+  return stated ? std::optional(2.0 * kSpread * kSpread * *stated) : std::nullopt;
 }
 
 /// Consecutive blocks of a stroke in which it moves slowly.
@@ -99,7 +92,7 @@ class SlowStretch {
   bool is_still() const {
     const SampleBlock all = whole();
     return ratio_of(samples_, all) > kNoOrder ||
-           (blocks_.size() >= kFewestMeans && may_be_jitter(all) && goes_back_and_forth(blocks_) &&
+           (blocks_.size() >= kFewestBlocks && may_be_jitter(all) && goes_back_and_forth(blocks_) &&
             ratio_of(blocks_, block_of(blocks_, 0, blocks_.size())) > kNoOrder);
   }
 

@@ -15,6 +15,8 @@ struct SampleDetail {
   /// Covariance [xx, xy, yy] of the position; zeros = isotropic noise. If set, the sample's sigma_m
   /// must be mean_sigma_m(covariance_m2). [m^2]
   Eigen::Vector3d covariance_m2 = Eigen::Vector3d::Zero();
+
+  bool operator==(const SampleDetail&) const = default;
 };
 
 /// True if it has a normal or a covariance.

@@ -69,16 +69,6 @@ MemoryOptions at_least_usable(MemoryOptions options) {
   return options;
 }
 
-/// Whether samples continue a patch. What is said of its tip holds for all of it: another radius,
-/// or the other side, is of another stroke that has the same number.
-bool is_of_one_stroke(const PatchContext& patch, const PatchContext& more) {
-  const bool same_side = patch.material_side == more.material_side ||
-                         patch.material_side == MaterialSide::Unspecified ||
-                         more.material_side == MaterialSide::Unspecified;
-  return patch.probe == more.probe && patch.patch == more.patch &&
-         patch.tip_radius_m == more.tip_radius_m && same_side;
-}
-
 }  // namespace
 
 SampleMemory::SampleMemory(const MemoryOptions& options) : options_(at_least_usable(options)) {}

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -19,11 +19,28 @@ struct StoredSample {
   double sigma_m = 0.0;   ///< noise of ONE of its contacts; 0 = not known [m]
   double weight = 1.0;    ///< number of contacts with independent noise that it is worth
   double contacts = 1.0;  ///< number of contacts that it stands for
+
+  bool operator==(const StoredSample&) const = default;
 };
 
 /// Noise of one contact of a sample: as stated, or else the default. 0 = not known [m]
 inline double sigma_m_of(const StoredSample& sample, double default_sigma_m) {
   return sample.sigma_m > 0.0 ? sample.sigma_m : default_sigma_m;
+}
+
+/// Mean variance of the samples, of which there are some, each a mean of several contacts, as their
+/// noise is stated; nullopt unless it is stated of all. [m^2]
+inline std::optional<double> stated_variance_m2(std::span<const StoredSample> samples,
+                                                double default_sigma_m) {
+  double sum = 0.0;
+  for (const StoredSample& sample : samples) {
+    const double sigma_m = sigma_m_of(sample, default_sigma_m);
+    if (!(sigma_m > 0.0)) {
+      return std::nullopt;
+    }
+    sum += sigma_m * sigma_m / sample.weight;
+  }
+  return sum / static_cast<double>(samples.size());
 }
 
 struct StoredPatch {
@@ -35,13 +52,14 @@ struct StoredPatch {
   /// Contacts per stored sample; a dwell's sample stands for more (dwells.h).
   double contacts_per_sample = 1.0;
   Vec2 newest_m = Vec2::Zero();  ///< the last contact added
-  /// True for a run of single touches (touches/joined_touches.h). Such a patch may change anywhere,
-  /// other patches only at their end.
+  /// True for a run of single touches (touches/joined_touches.h).
   bool is_joined = false;
   /// For a single touch that lies on the way through such runs: direction of the way, unit, and the
   /// turn of the way's step there [rad]. Zero if unknown.
   Vec2 direction = Vec2::Zero();
   double turn = 0.0;
+
+  bool operator==(const StoredPatch&) const = default;
 };
 
 /// What is said of a patch's first sample: of a single touch all there is.
@@ -77,6 +95,11 @@ inline Eigen::AlignedBox2d box_of(std::span<const StoredPatch> patches) {
   return box;
 }
 
+/// Half the longer side of a box; 0 if it holds nothing. [m]
+inline double half_extent_m(const Eigen::AlignedBox2d& box) {
+  return box.isEmpty() ? 0.0 : 0.5 * box.sizes().maxCoeff();
+}
+
 /// A range of samples or points of one patch, in their order along the arc: [begin, end).
 struct PatchSpan {
   std::size_t begin = 0;
@@ -84,22 +107,5 @@ struct PatchSpan {
   bool is_joined = false;  ///< StoredPatch's
   std::size_t size() const { return end - begin; }
 };
-
-/// Identifies a state of a patch in memory, which only grows at its end: equal versions mean an
-/// unchanged patch.
-struct PatchVersion {
-  std::uint32_t probe = 0;
-  std::uint32_t patch = 0;
-  std::size_t samples = 0;
-  double contacts_per_sample = 0.0;
-  Vec2 newest_m = Vec2::Zero();
-
-  bool operator==(const PatchVersion&) const = default;
-};
-
-inline PatchVersion version_of(const StoredPatch& patch) {
-  return {patch.context.probe, patch.context.patch, patch.samples.size(), patch.contacts_per_sample,
-          patch.newest_m};
-}
 
 }  // namespace palpate

@@ -1,11 +1,11 @@
 #include "core/recognition/tree/tree_covariance.h"
 
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <vector>
 
 #include "core/numerics/matrices/symmetric_eigen.h"
+#include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 
 namespace palpate {
@@ -53,8 +53,7 @@ ShapePoseCovariance propagated_covariance(std::span<const TreePoint> points,
                                           const RecognitionTreeOptions& options) {
   const CurveClass curve_class = answer.shape.curve_class;
   const auto n = static_cast<Eigen::Index>(parameter_letters(curve_class).size()) + 3;
-  ShapePoseCovariance unknown = ShapePoseCovariance::Zero(n, n);
-  unknown.diagonal().setConstant(std::numeric_limits<double>::infinity());
+  const ShapePoseCovariance unknown = untold_covariance(n);
   if (!answer.world_T_curve) {
     return unknown;
   }

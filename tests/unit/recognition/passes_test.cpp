@@ -56,7 +56,7 @@ TEST(Passes, AreCutWhereAStrokeTurnsBackOverItself) {
       for (const auto& [passes, each] : {std::pair(2, 16), {2, 60}, {6, 60}, {3, 300}}) {
         for (int seed = 0; seed < 20; ++seed) {
           const auto samples = strokes(way, passes, each, rng, sigma_m);
-          const auto returns = turns_of(samples, kUnknown).returns;
+          const auto returns = reversals_of(samples, kUnknown).returns;
           ASSERT_EQ(returns.size(), static_cast<std::size_t>(passes - 1))
               << sigma_m << " " << passes << " " << each;
           for (std::size_t k = 0; k < returns.size(); ++k) {
@@ -80,7 +80,7 @@ TEST(Passes, OfTenSamplesAreCutWhereTheNoiseIsStated) {
     for (const double sigma_m : {1e-6, 1e-5, 5e-5}) {
       for (int seed = 0; seed < 20; ++seed) {
         const auto samples = strokes(way, 4, 10, rng, sigma_m);
-        EXPECT_EQ(turns_of(samples, sigma_m).returns, (std::vector<std::size_t>{11, 21, 31}))
+        EXPECT_EQ(reversals_of(samples, sigma_m).returns, (std::vector<std::size_t>{11, 21, 31}))
             << sigma_m;
       }
     }
@@ -92,7 +92,7 @@ TEST(Passes, AStrokeThatOnlyBendsIsOne) {
   for (const Way& way : {Way(circle), Way(over_a_cusp), Way(round_a_needle)}) {
     for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
       for (const int each : {12, 60, 300, 3000}) {
-        EXPECT_TRUE(turns_of(strokes(way, 1, each, rng, sigma_m), kUnknown).returns.empty())
+        EXPECT_TRUE(reversals_of(strokes(way, 1, each, rng, sigma_m), kUnknown).returns.empty())
             << sigma_m << " " << each;
       }
     }
@@ -104,16 +104,16 @@ TEST(Passes, ACuspIsWhereItIsAndBendsHaveNone) {
   for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
     for (const int each : {60, 300}) {
       const std::vector<StoredSample> samples = strokes(over_a_cusp, 1, each, rng, sigma_m);
-      const auto cusps = turns_of(samples, kUnknown).cusps;
+      const auto cusps = reversals_of(samples, kUnknown).cusps;
       ASSERT_EQ(cusps.size(), 1U) << sigma_m << " " << each;
       // Near the cusp x = 5 cm t^2: within a few deviations of the noise the farthest may be any.
       const double reach = std::sqrt(4.0 * sigma_m / 0.05) / 2.0 * each;
       EXPECT_NEAR(static_cast<double>(cusps.front()), 0.5 * each, 2.0 + reach);
-      EXPECT_TRUE(turns_of(strokes(ellipse, 1, each, rng, sigma_m), kUnknown).cusps.empty());
+      EXPECT_TRUE(reversals_of(strokes(ellipse, 1, each, rng, sigma_m), kUnknown).cusps.empty());
       // A spike turns a stroke back twice, and forward again.
       std::vector<StoredSample> spiked = strokes(ellipse, 1, each, rng, sigma_m);
       spiked[static_cast<std::size_t>(each) / 2].position_m -= Vec2(0.0, 0.03);
-      EXPECT_TRUE(turns_of(spiked, kUnknown).cusps.empty());
+      EXPECT_TRUE(reversals_of(spiked, kUnknown).cusps.empty());
     }
   }
 }
@@ -137,10 +137,11 @@ TEST(Passes, RunsOfSpikesTurnNothingBackAndHideNoTurn) {
   for (const double sigma_m : {1e-9, 1e-6, 1e-5, 1e-4}) {
     for (int seed = 0; seed < 25; ++seed) {
       const auto spiked = [&](const Way& way, int passes) {
-        return turns_of(with_runs_of_spikes(strokes(way, passes, 300, rng, sigma_m), rng), sigma_m);
+        return reversals_of(with_runs_of_spikes(strokes(way, passes, 300, rng, sigma_m), rng),
+                            sigma_m);
       };
-      EXPECT_EQ(spiked(ellipse, 1), Turns{}) << sigma_m;
-      EXPECT_EQ(spiked(circle, 1), Turns{}) << sigma_m;
+      EXPECT_EQ(spiked(ellipse, 1), Reversals{}) << sigma_m;
+      EXPECT_EQ(spiked(circle, 1), Reversals{}) << sigma_m;
       EXPECT_EQ(spiked(ellipse, 3).returns.size(), 2U) << sigma_m;
       EXPECT_EQ(spiked(over_a_cusp, 1).cusps.size(), 1U) << sigma_m;
     }
@@ -151,7 +152,7 @@ TEST(Passes, AStrokeShorterThanItsNoiseIsOne) {
   std::mt19937_64 rng(5);
   const Way short_way = [](double u) { return Vec2(10.0 * kDeviation * u, 0.0); };
   for (int seed = 0; seed < 50; ++seed) {
-    EXPECT_TRUE(turns_of(strokes(short_way, 1, 500, rng), kUnknown).returns.empty()) << seed;
+    EXPECT_TRUE(reversals_of(strokes(short_way, 1, 500, rng), kUnknown).returns.empty()) << seed;
   }
 }
 
@@ -164,10 +165,10 @@ TEST(Passes, AreCutByTheStatedNoiseWhereTheSamplesDoNotShowIt) {
   constexpr int kEach = 200;
   for (int seed = 0; seed < 50; ++seed) {
     const auto samples = strokes(bend, 2, kEach, rng, kNoise);
-    const auto returns = turns_of(samples, kNoise).returns;
+    const auto returns = reversals_of(samples, kNoise).returns;
     ASSERT_EQ(returns.size(), 1U) << seed;
     EXPECT_NEAR(static_cast<double>(returns.front()), kEach, 1.0 + 8.0 * kNoise / 0.01 * kEach);
-    EXPECT_TRUE(turns_of(strokes(bend, 1, kEach, rng, kNoise), kNoise).returns.empty()) << seed;
+    EXPECT_TRUE(reversals_of(strokes(bend, 1, kEach, rng, kNoise), kNoise).returns.empty()) << seed;
   }
 }
 
@@ -180,7 +181,7 @@ TEST(Passes, HaveAllSamplesInTheDirectionOfTheFirst) {
     patch.details[i].normal_sigma_rad = static_cast<double>(i);
   }
   const std::vector<StoredPatch> passes =
-      passes_of(patch, turns_of(patch.samples, kUnknown).returns);
+      passes_of(patch, reversals_of(patch.samples, kUnknown).returns);
   ASSERT_EQ(passes.size(), 3U);
   std::size_t before = 0;
   for (std::size_t p = 0; p < passes.size(); ++p) {

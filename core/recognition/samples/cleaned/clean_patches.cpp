@@ -54,7 +54,7 @@ bool has_any(const std::vector<bool>& flags) {
 /// a turn, so that good samples look like spikes there. The farthest sample at a cusp may be of
 /// either arm and bends the polynomial of the other: it waits for a class to judge it. The parts
 /// share the probability of a false alarm by their samples.
-std::vector<bool> spikes_between(const Turns& turns, std::span<const StoredSample> samples,
+std::vector<bool> spikes_between(const Reversals& turns, std::span<const StoredSample> samples,
                                  double false_alarm, WorkBudget& work) {
   std::vector<PatchSpan> gaps;  // between parts: nothing, or the sample at a cusp
   for (const std::size_t turn : turns.returns) gaps.push_back({turn, turn});
@@ -95,10 +95,10 @@ std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes
 
 /// The turns of a patch without the samples that are flagged and those at `cusps`, which spikes may
 /// be, by index among all.
-Turns turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cusps,
-                    std::span<const StoredSample> samples, double default_sigma_m) {
+Reversals turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cusps,
+                        std::span<const StoredSample> samples, double default_sigma_m) {
   for (const std::size_t cusp : cusps) is_spike[cusp - 1] = true;
-  const Turns turns = turns_of(without_spikes(samples, is_spike), default_sigma_m);
+  const Reversals turns = reversals_of(without_spikes(samples, is_spike), default_sigma_m);
   return {among_all(samples, is_spike, turns.returns), among_all(samples, is_spike, turns.cusps)};
 }
 
@@ -111,15 +111,15 @@ void clean_passes(const StoredPatch& patch, double default_sigma_m, double false
                   WorkBudget& work) {
   const auto even = with_even_noise(patch);
   const std::span<const StoredSample> samples = even ? *even : patch.samples;
-  Turns turns = turns_of(samples, default_sigma_m);
+  Reversals turns = reversals_of(samples, default_sigma_m);
   std::vector<bool> is_spike = spikes_between(turns, samples, false_alarm, work);
   if ((has_any(is_spike) || !turns.cusps.empty()) &&
       turns_without(is_spike, turns.cusps, samples, default_sigma_m) != turns) {
-    if (turns != Turns{}) {
+    if (turns != Reversals{}) {
       is_spike = spikes_between({}, samples, false_alarm, work);
     }
     turns = turns_without(is_spike, {}, samples, default_sigma_m);
-    if (turns != Turns{}) {
+    if (turns != Reversals{}) {
       is_spike = spikes_between(turns, samples, false_alarm, work);
     }
   }
@@ -134,7 +134,7 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
   seen_.resize(patches.size());
   moved_.clear();
   clean_.clear();
-  const double half_extent_m = 0.5 * box_of(patches).sizes().maxCoeff();
+  const double extent_m = half_extent_m(box_of(patches));
   for (std::size_t p = 0; p < patches.size(); ++p) {
     const StoredPatch& patch = patches[p];
     if (patch.samples.size() == 1) {  // a touch: it neither dwells nor turns back
@@ -144,7 +144,7 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
       continue;
     }
     // Computed every time: whether a patch is small depends on all patches.
-    Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, half_extent_m)};
+    Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
       clean_passes(moving(patch, now.is_one_place, default_sigma_m), default_sigma_m, false_alarm,

@@ -3,12 +3,30 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/numerics/work_budget.h"
-#include "core/recognition/samples/sample_memory.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
+
+/// Identifies a state of a patch in memory, which only grows at its end: equal versions mean an
+/// unchanged patch.
+struct PatchVersion {
+  std::uint32_t probe = 0;
+  std::uint32_t patch = 0;
+  std::size_t samples = 0;
+  double contacts_per_sample = 0.0;
+  Vec2 newest_m = Vec2::Zero();
+
+  bool operator==(const PatchVersion&) const = default;
+};
+
+inline PatchVersion version_of(const StoredPatch& patch) {
+  return {patch.context.probe, patch.context.patch, patch.samples.size(), patch.contacts_per_sample,
+          patch.newest_m};
+}
 
 class CleanPatches {
  public:

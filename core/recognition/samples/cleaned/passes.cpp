@@ -54,19 +54,6 @@ struct Lengths {
   double clear_m = 0.0;
 };
 
-/// Root mean square noise of the samples, as it is stated; 0 unless it is of all of them. [m]
-double stated_noise_m(std::span<const StoredSample> samples, double default_sigma_m) {
-  double sum = 0.0;
-  for (const StoredSample& sample : samples) {
-    const double sigma_m = sigma_m_of(sample, default_sigma_m);
-    if (!(sigma_m > 0.0)) {
-      return 0.0;
-    }
-    sum += sigma_m * sigma_m / sample.weight;
-  }
-  return std::sqrt(sum / static_cast<double>(samples.size()));
-}
-
 /// The median second difference of the path, which places where it turns back, and single spikes,
 /// do not change: of noise, of the bend of the way, or of both. [m]
 double second_difference_m(std::span<const Vec2> positions) {
@@ -93,7 +80,7 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   }
   const NoiseEstimate noise = estimate_noise(positions);
   // 0 where either is not known.
-  const double stated_m = stated_noise_m(samples, default_sigma_m);
+  const double stated_m = std::sqrt(stated_variance_m2(samples, default_sigma_m).value_or(0.0));
   // Passes of few samples, shorter than the blocks by which noise is estimated, are no noise: it
   // makes second differences of 1 + 4 + 1 variances, the median of whose root is kMedian.
   constexpr double kMedian = 1.1774100225154747;
@@ -172,9 +159,9 @@ bool leads_back(std::span<const StoredSample> before, std::span<const StoredSamp
   return 2 * at.places >= kPlaces && 4 * at.on >= 3 * at.places;
 }
 
-/// turns_of, of samples without spikes.
-Turns turns_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
-  Turns turns;
+/// reversals_of, of samples without spikes.
+Reversals reversals_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
+  Reversals turns;
   if (samples.size() < 2 * kFewestOfPass) {
     return turns;
   }
@@ -214,7 +201,7 @@ Turns turns_of_path(std::span<const StoredSample> samples, double default_sigma_
 
 }  // namespace
 
-Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
+Reversals reversals_of(std::span<const StoredSample> samples, double default_sigma_m) {
   if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
     return {};
   }
@@ -222,7 +209,7 @@ Turns turns_of(std::span<const StoredSample> samples, double default_sigma_m) {
   std::vector<StoredSample> path;
   path.reserve(kept.size());
   for (const std::size_t i : kept) path.push_back(samples[i]);
-  Turns turns = turns_of_path(path, default_sigma_m);
+  Reversals turns = reversals_of_path(path, default_sigma_m);
   for (std::size_t& turn : turns.returns) turn = kept[turn - 1] + 1;
   for (std::size_t& turn : turns.cusps) turn = kept[turn - 1] + 1;
   return turns;
