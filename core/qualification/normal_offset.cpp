@@ -7,11 +7,7 @@ namespace palpate {
 
 Eigen::RowVectorXd offset_basis(double phi, int order) {
   Eigen::RowVectorXd basis(offset_coefficients(order));
-  basis[0] = 1.0;
-  for (int k = 2; k <= order; ++k) {
-    basis[first_offset_of(k)] = std::cos(k * phi);
-    basis[first_offset_of(k) + 1] = std::sin(k * phi);
-  }
+  set_harmonics(Vec2(std::cos(phi), std::sin(phi)), order, &basis);
   return basis;
 }
 

@@ -8,22 +8,6 @@
 namespace palpate {
 namespace {
 
-/// 1, cos 2 phi, sin 2 phi, cos 3 phi ... for the normal's direction phi.
-Eigen::Matrix<double, offset_coefficients(kHighestOrder), 1> offset_row(const Vec2& normal) {
-  Eigen::Matrix<double, offset_coefficients(kHighestOrder), 1> row;
-  row[0] = 1.0;
-  double cosine = normal.x();
-  double sine = normal.y();
-  for (int k = 2; k <= kHighestOrder; ++k) {
-    const double next = cosine * normal.x() - sine * normal.y();
-    sine = sine * normal.x() + cosine * normal.y();
-    cosine = next;
-    row[first_offset_of(k)] = cosine;
-    row[first_offset_of(k) + 1] = sine;
-  }
-  return row;
-}
-
 /// Adds the products of four rows to columns First ... Last - 1 of the upper triangle.
 template <int First, int Last, int Columns>
 void add_products(const Eigen::Matrix<double, Columns, 4>& rows,
@@ -56,7 +40,8 @@ std::vector<CoherentStep> coherent_steps(const CanonicalFit& placed, const FitDa
                                 : normal.dot(left_of(position(curve, fitted.t)));
     step.row.head<kUnknowns>() /= sigma * reduced.scale;
     step.row[kResidualColumn] = at.residual;
-    step.row.tail<offset_coefficients(kHighestOrder)>() = offset_row(fitted.normal);
+    auto harmonics = step.row.tail<offset_coefficients(kHighestOrder)>();
+    set_harmonics(fitted.normal, kHighestOrder, &harmonics);
     steps.push_back(step);
   }
   return steps;
