@@ -5,7 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "core/local/residual_block.h"
 #include "core/numerics/probability/normal_law.h"
 #include "core/numerics/quantile.h"
 
@@ -31,12 +30,12 @@ struct BlockNoise {
 };
 
 /// Uses blocks of at least `block` samples, of lengths as equal as possible.
-BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
+BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block, NoiseScratch* scratch) {
   BlockNoise result;
   const std::size_t blocks = samples.size() / block;
-  std::vector<double> sizes;
-  sizes.reserve(samples.size());
-  ResidualBlock residuals;
+  std::vector<double>& sizes = scratch->sizes;
+  sizes.clear();
+  ResidualBlock& residuals = scratch->residuals;
   int fitted = 0;
   for (std::size_t b = 0; b < blocks; ++b) {
     const std::size_t first = b * samples.size() / blocks;
@@ -66,9 +65,10 @@ BlockNoise from_blocks(std::span<const Vec2> samples, std::size_t block) {
 
 /// The noise by how neighbours go to and fro: a median of second differences. A path leaves as much
 /// only if it turns by a radian from one sample to the next.
-double to_and_fro(std::span<const Vec2> samples) {
+double to_and_fro(std::span<const Vec2> samples, NoiseScratch* scratch) {
   constexpr double kVariances = 6.0;  // 1 + 4 + 1, of a second difference
-  std::vector<double> sizes;
+  std::vector<double>& sizes = scratch->sizes;
+  sizes.clear();
   sizes.reserve(2 * samples.size());
   for (std::size_t i = 1; i + 1 < samples.size(); ++i) {
     const Vec2 second = samples[i - 1] - 2.0 * samples[i] + samples[i + 1];
@@ -83,8 +83,8 @@ double to_and_fro(std::span<const Vec2> samples) {
 /// that are too short by more than their fit may turn. The few that are fitted all the same are
 /// those with little noise by chance, beside which they are long.
 NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t block,
-                                   double neighbours) {
-  BlockNoise result = from_blocks(samples, block);
+                                   double neighbours, NoiseScratch* scratch) {
+  BlockNoise result = from_blocks(samples, block, scratch);
   const auto unresolved = [&] {
     return result.noise.status == LocalStatus::Unresolved ||
            result.mean_extent_m <=
@@ -92,7 +92,7 @@ NoiseEstimate from_resolved_blocks(std::span<const Vec2> samples, std::size_t bl
   };
   while (unresolved() && 2 * block <= samples.size()) {
     block *= 2;
-    result = from_blocks(samples, block);
+    result = from_blocks(samples, block, scratch);
   }
   if (result.noise.status == LocalStatus::Ok && unresolved()) {
     return {LocalStatus::Unresolved, 0.0, 0};
@@ -120,7 +120,13 @@ double robust_sigma(std::vector<double>& sizes) {
 }
 
 NoiseEstimate estimate_noise(std::span<const Vec2> samples) {
-  std::vector<Vec2> distinct;
+  NoiseScratch scratch;
+  return estimate_noise(samples, &scratch);
+}
+
+NoiseEstimate estimate_noise(std::span<const Vec2> samples, NoiseScratch* scratch) {
+  std::vector<Vec2>& distinct = scratch->distinct;
+  distinct.clear();
   distinct.reserve(samples.size());
   for (const Vec2& p : samples) {
     if (!p.allFinite()) {
@@ -135,12 +141,12 @@ NoiseEstimate estimate_noise(std::span<const Vec2> samples) {
                                                                  : LocalStatus::TooFewSamples,
             0.0, 0};
   }
-  const double neighbours = to_and_fro(distinct);
-  const NoiseEstimate fine = from_resolved_blocks(distinct, kShortBlock, neighbours);
+  const double neighbours = to_and_fro(distinct, scratch);
+  const NoiseEstimate fine = from_resolved_blocks(distinct, kShortBlock, neighbours, scratch);
   if (distinct.size() < kLongBlock) {
     return fine;
   }
-  const NoiseEstimate coarse = from_resolved_blocks(distinct, kLongBlock, neighbours);
+  const NoiseEstimate coarse = from_resolved_blocks(distinct, kLongBlock, neighbours, scratch);
   if (coarse.status != LocalStatus::Ok || fine.status != LocalStatus::Ok) {
     return coarse.status == LocalStatus::Ok ? coarse : fine;
   }

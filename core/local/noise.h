@@ -1,10 +1,12 @@
 // Noise of a patch, from its high frequencies. Does not need the class of the curve.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
 #include "core/local/local_status.h"
+#include "core/local/residual_block.h"
 
 namespace palpate {
 
@@ -26,6 +28,20 @@ struct NoiseEstimate {
 /// (form error, drift) is not included. If samples are so far apart that 8 of them turn by a right
 /// angle, there is no estimate.
 NoiseEstimate estimate_noise(std::span<const Vec2> samples);
+
+/// Memory of an estimate, which allocates nothing where it is reserved for as many samples.
+struct NoiseScratch {
+  void reserve(std::size_t samples) {
+    distinct.reserve(samples);
+    sizes.reserve(2 * samples);  // second differences of both coordinates
+    residuals.reserve(samples);
+  }
+
+  std::vector<Vec2> distinct;
+  std::vector<double> sizes;
+  ResidualBlock residuals;
+};
+NoiseEstimate estimate_noise(std::span<const Vec2> samples, NoiseScratch* scratch);
 
 /// Standard deviation of residuals of equal variance from their absolute values, some of which may
 /// be spikes: a median, then the mean square of those within 4 deviations, corrected for that cut.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -20,6 +21,9 @@ class ResidualBlock {
  public:
   static constexpr int kDegree = 4;
   static constexpr int kUnknowns = kDegree + 1;
+
+  /// Fits of so many samples allocate nothing.
+  void reserve(std::size_t samples) { lanes_.reserve((samples + kWidth - 1) / kWidth); }
 
   /// Fits a polynomial of `degree` <= kDegree to the samples whose `use` is set (empty: all). Needs
   /// more than kUnknowns of them. Returns Ok, or the reason of the failure. O(samples).

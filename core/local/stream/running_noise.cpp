@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "core/local/noise.h"
-
 namespace palpate {
 
 void RunningNoise::add(const Vec2& position_m) {
@@ -11,7 +9,7 @@ void RunningNoise::add(const Vec2& position_m) {
   if (chunk_.size() < kChunk) {
     return;
   }
-  const NoiseEstimate noise = estimate_noise(chunk_);
+  const NoiseEstimate noise = estimate_noise(chunk_, &scratch_);
   chunk_.clear();
   if (noise.status != LocalStatus::Ok || noise.dof < 1) {
     return;
@@ -30,11 +28,11 @@ void RunningNoise::clear() {
   dof_ = 0.0;
 }
 
-std::optional<double> RunningNoise::sigma_m() const {
+std::optional<double> RunningNoise::sigma_m() {
   double squares = squares_;
   double dof = dof_;
   if (dof <= 0.0) {
-    const NoiseEstimate noise = estimate_noise(chunk_);
+    const NoiseEstimate noise = estimate_noise(chunk_, &scratch_);
     if (noise.status != LocalStatus::Ok) {
       return std::nullopt;
     }

@@ -6,11 +6,12 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
+#include "core/local/noise.h"
 
 namespace palpate {
 
 /// Pools estimate_noise (core/local/noise.h) over consecutive chunks of samples. A spike spoils its
-/// chunk only. Bounded memory; O(1) per sample on average.
+/// chunk only. Bounded memory, allocated at once; O(1) per sample on average.
 class RunningNoise {
  public:
   /// Samples per chunk: about 20 degrees of freedom, so a single chunk has a relative error of 16
@@ -20,17 +21,21 @@ class RunningNoise {
   /// still followed.
   static constexpr double kMostDof = 2000.0;
 
-  RunningNoise() { chunk_.reserve(kChunk); }
+  RunningNoise() {
+    chunk_.reserve(kChunk);
+    scratch_.reserve(kChunk);
+  }
 
   void add(const Vec2& position_m);
   void clear();
 
   /// Standard deviation of one coordinate, enlarged for the uncertainty of so few residuals (by the
   /// variance of a Student variable); nullopt if nothing is known yet. [m]
-  std::optional<double> sigma_m() const;
+  std::optional<double> sigma_m();
 
  private:
   std::vector<Vec2> chunk_;
+  NoiseScratch scratch_;
   double squares_ = 0.0;  ///< dof * variance, summed over chunks
   double dof_ = 0.0;
 };

@@ -183,6 +183,27 @@ TEST(SlidingWindow, EstimatesEveryShiftFromTheFirstWindowOnAndAllocatesNothing) 
   EXPECT_EQ(window.count(), 0U);
 }
 
+TEST(SlidingWindow, AllocatesNothingWhereTheNoiseIsNotStatedEither) {
+  auto rng = test::test_rng();
+  const std::vector<Vec2> samples =
+      test::with_noise(test::samples_of(test::touched_arcs()[2], 600), 2e-5, rng);
+  SlidingWindow window;
+  const auto run = [&](std::size_t first, std::size_t end) {
+    int estimates = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const auto estimate = window.add(samples[i]);
+      estimates += estimate && estimate->result ? 1 : 0;
+    }
+    return estimates;
+  };
+  const std::size_t before = test::allocation_count();
+  EXPECT_GT(run(0, 300), 0);
+  window.reset();
+  // Until a chunk is full, each estimate has the noise of what there is of it.
+  EXPECT_GT(run(300, samples.size()), 0);
+  EXPECT_EQ(test::allocation_count(), before);
+}
+
 /// A circle far away from the origin, for a hundred turns: the last window is as good as the first.
 TEST(SlidingWindow, GathersNoRounding) {
   constexpr double kRadius = 0.02;
