@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "core/local/reading_step.h"
 #include "core/local/spikes/block_survey.h"
@@ -99,10 +100,8 @@ std::vector<std::uint8_t> on_path_of(std::span<const Vec2> samples) {
   return count < samples.size() && count >= kFewestSamples ? flags : std::vector<std::uint8_t>{};
 }
 
-}  // namespace
-
-Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
-  Spikes result;
+/// The samples that are finite; the others are dropped.
+Kept finite_of(std::span<const Vec2> samples, std::vector<std::size_t>* dropped) {
   Kept kept;
   kept.samples.reserve(samples.size());
   kept.numbers.reserve(samples.size());
@@ -111,83 +110,137 @@ Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
       kept.samples.push_back(samples[i]);
       kept.numbers.push_back(i);
     } else {
-      result.indices.push_back(i);
+      dropped->push_back(i);
     }
   }
+  return kept;
+}
+
+/// Passes over a patch. Each leaves out the spikes found before, which occupied places in the
+/// blocks. If it finds none although samples are off, the next pass uses longer blocks: spikes may
+/// be the majority of a short one. Once less than one sample a block is found, the noise is told,
+/// and the next ones search only where samples are off still.
+class SpikePasses {
+ public:
+  SpikePasses(Kept kept, const SpikeOptions& options, WorkBudget& work, Spikes* result)
+      : kept_(std::move(kept)),
+        cusps_(options.cusps),
+        work_(work),
+        result_(result),
+        sigma_m_(options.sigma_m),
+        last_found_(kept_.samples.size()) {}
+
+  void run() {
+    constexpr int kMostPasses = 8;  // a bound of time: each but those by longer blocks finds some
+    for (int pass = 0; pass < kMostPasses && kept_.samples.size() >= kFewestSamples; ++pass) {
+      if (doublings_ == 0) {
+        survey(pass == 0);
+      }
+      if (survey_.status != LocalStatus::Ok) {
+        return;
+      }
+      result_->sigma_m = survey_.sigma_m;
+      if ((!survey_.is_any_off && !survey_.is_noise_spiked) || !work_.allows() ||
+          !may_find_more(search())) {
+        return;
+      }
+    }
+  }
+
+ private:
+  BlockSurvey surveyed() const {
+    return survey_blocks(kept_.samples, on_path_, sigma_m_, result_->threshold, cusps_, work_);
+  }
+
+  /// Where samples are off, and what the noise is. The first survey is that of all samples.
+  void survey(bool is_first) {
+    on_path_ = on_path_of(kept_.samples);
+    survey_ = surveyed();
+    if (is_first && !(sigma_m_ > 0.0)) {
+      // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
+      const double rounding_m = noise_of_rounding_m(reading_step_m(kept_.samples, survey_.sigma_m));
+      if (survey_.sigma_m < rounding_m) {
+        sigma_m_ = rounding_m;
+        survey_ = surveyed();
+      }
+    }
+    if (is_first) {
+      result_->status = survey_.status;
+    }
+  }
+
+  std::size_t block_length() const {
+    return std::min(survey_.length << doublings_, kept_.samples.size());
+  }
+
+  /// One flag per sample that is left: 1 for a spike.
+  std::vector<std::uint8_t> search() {
+    BlockSurvey searched = survey_;
+    searched.length = block_length();
+    const bool everywhere =
+        last_found_ > kept_.samples.size() / survey_.length || survey_.is_noise_spiked;
+    if (everywhere) {
+      searched.doubtful.clear();
+    } else {
+      searched.sigma_m = last_sigma_m_;
+    }
+    SpikeSearch found =
+        search_spikes(kept_.samples, on_path_, searched, sigma_m_ > 0.0 || !everywhere,
+                      result_->threshold, cusps_, work_);
+    last_sigma_m_ = found.sigma_m;
+    result_->sigma_m = found.sigma_m;
+    if (doublings_ > 0) {
+      spare_runs(static_cast<std::ptrdiff_t>(survey_.length / 2), &found.is_spike);
+    }
+    return std::move(found.is_spike);
+  }
+
+  /// Drops what a search has found. Whether the next one may find more: among the rest, or in
+  /// longer blocks.
+  bool may_find_more(std::span<const std::uint8_t> is_spike) {
+    // Spikes in a row that fill a block are a quarter of one that is four times as long: no quartic
+    // through the rest goes through them.
+    constexpr int kMostDoublings = 2;
+    const std::size_t before = kept_.samples.size();
+    kept_.drop(is_spike, &result_->indices);
+    if (kept_.samples.size() < before) {
+      last_found_ = before - kept_.samples.size();
+      doublings_ = 0;
+      return true;
+    }
+    const bool may_be_longer =
+        survey_.is_any_off && doublings_ < kMostDoublings && block_length() < kept_.samples.size();
+    doublings_ += may_be_longer ? 1 : 0;
+    return may_be_longer;
+  }
+
+  Kept kept_;
+  CuspEnds cusps_;
+  WorkBudget& work_;
+  Spikes* result_;
+  double sigma_m_;                     ///< of the noise, where it is known; else 0
+  double last_sigma_m_ = 0.0;          ///< of the search before
+  std::size_t last_found_;             ///< by the last search that found any
+  int doublings_ = 0;                  ///< of the surveyed blocks
+  BlockSurvey survey_ = {};            ///< of the samples that are left
+  std::vector<std::uint8_t> on_path_;  ///< likewise
+};
+
+}  // namespace
+
+Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
+  Spikes result;
   result.sigma_m = options.sigma_m;
+  Kept kept = finite_of(samples, &result.indices);
   if (kept.samples.size() < kFewestSamples) {
     return result;
   }
   result.threshold = two_sided_normal_quantile(options.false_alarms_per_patch /
                                                static_cast<double>(kept.samples.size()));
-  // Each pass leaves out the spikes found before, which occupied places in the blocks. If it finds
-  // none although samples are off, the next pass uses longer blocks: spikes may be the majority of
-  // a short one. Once less than one sample a block is found, the noise is told, and the next ones
-  // search only where samples are off still.
-  constexpr int kMostPasses = 8;  // a bound of time: each but those by longer blocks finds some
-  // Spikes in a row that fill a block are a quarter of one that is four times as long: no quartic
-  // through the rest goes through them.
-  constexpr int kMostDoublings = 2;
-  int doublings = 0;
-  double sigma_m = options.sigma_m;
-  double last_sigma_m = 0.0;
-  std::size_t last_found = samples.size();
-  BlockSurvey survey;
-  std::vector<std::uint8_t> on_path;
   WorkBudget unbounded;
-  WorkBudget& work = options.work != nullptr ? *options.work : unbounded;
-  for (int pass = 0; pass < kMostPasses && kept.samples.size() >= kFewestSamples; ++pass) {
-    if (doublings == 0) {
-      on_path = on_path_of(kept.samples);
-      survey = survey_blocks(kept.samples, on_path, sigma_m, result.threshold, options.cusps, work);
-      if (pass == 0 && !(sigma_m > 0.0)) {
-        // Rounded readings may agree to the last digit: their noise is no less than the rounding's.
-        const double rounding_m = noise_of_rounding_m(reading_step_m(kept.samples, survey.sigma_m));
-        if (survey.sigma_m < rounding_m) {
-          sigma_m = rounding_m;
-          survey =
-              survey_blocks(kept.samples, on_path, sigma_m, result.threshold, options.cusps, work);
-        }
-      }
-    }
-    if (pass == 0) {
-      result.status = survey.status;
-    }
-    if (survey.status != LocalStatus::Ok) {
-      break;
-    }
-    result.sigma_m = survey.sigma_m;
-    if ((!survey.is_any_off && !survey.is_noise_spiked) || !work.allows()) {
-      break;
-    }
-    BlockSurvey searched = survey;
-    searched.length = std::min(survey.length << doublings, kept.samples.size());
-    const bool everywhere =
-        last_found > kept.samples.size() / survey.length || survey.is_noise_spiked;
-    if (everywhere) {
-      searched.doubtful.clear();
-    } else {
-      searched.sigma_m = last_sigma_m;
-    }
-    SpikeSearch found = search_spikes(kept.samples, on_path, searched, sigma_m > 0.0 || !everywhere,
-                                      result.threshold, options.cusps, work);
-    last_sigma_m = found.sigma_m;
-    if (doublings > 0) {
-      spare_runs(static_cast<std::ptrdiff_t>(survey.length / 2), &found.is_spike);
-    }
-    result.sigma_m = found.sigma_m;
-    const std::size_t before = kept.samples.size();
-    kept.drop(found.is_spike, &result.indices);
-    if (kept.samples.size() < before) {
-      last_found = before - kept.samples.size();
-      doublings = 0;
-    } else if (survey.is_any_off && doublings < kMostDoublings &&
-               searched.length < kept.samples.size()) {
-      ++doublings;
-    } else {
-      break;
-    }
-  }
+  SpikePasses(std::move(kept), options, options.work != nullptr ? *options.work : unbounded,
+              &result)
+      .run();
   spare_ways(samples, &result.indices);
   std::sort(result.indices.begin(), result.indices.end());
   return result;
