@@ -19,20 +19,24 @@ void EstimateStream::add(const PatchContext& context, std::span<const ContactSam
   if (probe == probes_.end()) {
     probes_.push_back({context, SlidingWindow(options_)});
     probe = probes_.end() - 1;
-  } else if (probe->context.patch != context.patch) {
-    probe->window.reset();
   }
-  probe->context = context;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const ContactSample& sample = samples[i];
-    const bool repeated = probe->window.count() > 0 && sample.position_m == probe->newest_m;
-    if (repeated || fault_of(i, samples, details) != SampleFault::None) {
+    if (fault_of(i, samples, details) != SampleFault::None) {
       continue;
     }
+    const bool goes_on = probe->window.count() > 0 && is_of_one_stroke(probe->context, context);
+    if (goes_on && sample.position_m == probe->newest_m) {
+      continue;
+    }
+    if (!goes_on) {
+      probe->window.reset();
+    }
+    probe->context = goes_on ? continued(probe->context, context) : context;
     probe->newest_m = sample.position_m;
     if (const auto estimate = probe->window.add(sample.position_m, sample.sigma_m);
         estimate && estimate->result) {
-      probe->waiting.push_back({context, estimate->result.estimate});
+      probe->waiting.push_back({probe->context, estimate->result.estimate});
       if (probe->waiting.size() > kMostWaiting) {
         probe->waiting.pop_front();
       }

@@ -14,9 +14,9 @@
 
 namespace palpate {
 
-/// Each probe has one window, on its newest patch; a new patch begins a new window. Estimates wait
-/// until they are taken, those of a round tip until the material's side is known. If too many wait,
-/// the oldest are dropped.
+/// Each probe has one window, on its newest stroke; a new one (is_of_one_stroke) begins a new
+/// window. Estimates wait until they are taken, those of a round tip until the material's side is
+/// known. If too many wait, the oldest are dropped.
 class EstimateStream {
  public:
   explicit EstimateStream(const SlidingOptions& options) : options_(options) {}

@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "core/curves/curve.h"
+#include "core/recognition/estimate_stream.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/test_rng.h"
 
@@ -155,6 +157,41 @@ TEST(TakeEstimates, OfARoundTipWaitForTheSide) {
   const LocalEstimate& last = taken.back().estimate;
   EXPECT_LT((kEllipse.foot_point(last.position).position - last.position).norm(),
             5.0 * std::sqrt(last.covariance(0, 0)));
+}
+
+TEST(TakeEstimates, BeginAnewWhereAnotherTipOrSideHasTheSameNumber) {
+  const std::vector<ContactSample> samples = stroke(kEllipse, 0.05);
+  const std::span<const ContactSample> all(samples);
+  const PatchContext unspecified{.tip_radius_m = 1e-3};
+  PatchContext left = unspecified;
+  left.material_side = MaterialSide::Left;
+  PatchContext right = unspecified;
+  right.material_side = MaterialSide::Right;
+  PatchContext larger = right;
+  larger.tip_radius_m = 2e-3;
+  EstimateStream stream({});
+  const auto taken_after = [&](const PatchContext& context, std::size_t first, std::size_t count) {
+    stream.add(context, all.subspan(first, count), {});
+    return stream.take([](std::uint32_t, std::uint32_t) { return 1; }).size();
+  };
+  EXPECT_EQ(taken_after(left, 0, 40), 7U);
+  EXPECT_EQ(taken_after(unspecified, 40, 12), 3U);
+  // A window has no fewer samples than 16.
+  EXPECT_EQ(taken_after(right, 52, 15), 0U);
+  EXPECT_EQ(taken_after(right, 67, 1), 1U);
+  EXPECT_EQ(taken_after(larger, 68, 15), 0U);
+  EXPECT_EQ(taken_after(larger, 83, 1), 1U);
+}
+
+TEST(TakeEstimates, GoOnAfterSamplesThatAreNone) {
+  const std::vector<ContactSample> samples = stroke(kEllipse, 0.05);
+  const std::span<const ContactSample> all(samples);
+  const ContactSample none{Vec2::Constant(std::numeric_limits<double>::quiet_NaN())};
+  EstimateStream stream({});
+  stream.add({}, all.first(20), {});
+  stream.add({.patch = 1}, std::span(&none, 1), {});
+  stream.add({}, all.subspan(20, 4), {});
+  EXPECT_EQ(stream.take([](std::uint32_t, std::uint32_t) { return 0; }).size(), 3U);
 }
 
 }  // namespace
