@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/recognition/contacts.h"
-#include "core/recognition/samples/cleaned/clean_patches.h"
+#include "core/recognition/samples/stored_patch.h"
 
 namespace palpate {
 
@@ -24,18 +24,20 @@ class PatchContacts {
   void clear() { known_.clear(); }
 
  private:
-  /// The contacts of a patch, and the inputs they were computed from.
-  struct Known {
-    PatchVersion version;
-    std::vector<Vec2> touches;  ///< positions of a run of touches, which may change anywhere
+  /// What the contacts of a patch are computed from. Samples are compared one by one: another one
+  /// may be left out than last time, anywhere on the stroke.
+  struct Given {
+    StoredPatch used;
     std::size_t windows = 0;
     int side = 0;
     double form_deviation_m = 0.0;
     double noise_time = 1.0;
-    std::vector<bool> outliers;
-    std::vector<LocalizedContact> contacts;
 
-    bool same_as(const Known& other) const;
+    bool operator==(const Given&) const = default;
+  };
+  struct Known {
+    Given given;
+    std::vector<LocalizedContact> contacts;
   };
 
   std::vector<Known> known_;

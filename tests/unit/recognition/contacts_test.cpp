@@ -9,6 +9,7 @@
 
 #include "core/curves/curve.h"
 #include "core/recognition/estimate_stream.h"
+#include "core/recognition/patch_contacts.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/test_rng.h"
 
@@ -192,6 +193,28 @@ TEST(TakeEstimates, GoOnAfterSamplesThatAreNone) {
   stream.add({.patch = 1}, std::span(&none, 1), {});
   stream.add({}, all.subspan(20, 4), {});
   EXPECT_EQ(stream.take([](std::uint32_t, std::uint32_t) { return 0; }).size(), 3U);
+}
+
+TEST(Contacts, AreOfTheSamplesThatAreUsed) {
+  StoredPatch patch;
+  for (const ContactSample& sample : stroke(kEllipse, 0.05)) {
+    patch.samples.push_back({sample.position_m, sample.sigma_m});
+  }
+  patch.newest_m = patch.samples.back().position_m;
+  const auto without = [&](std::size_t k) {
+    StoredPatch rest = patch;
+    rest.samples.erase(rest.samples.begin() + static_cast<std::ptrdiff_t>(k));
+    return rest;
+  };
+  const auto kappa_of = [](PatchContacts& contacts, const StoredPatch& used) {
+    return contacts.of(std::span(&used, 1), {}, {}, {}).front().estimate.kappa;
+  };
+  PatchContacts kept;
+  kappa_of(kept, without(20));
+  // As many samples, and the same newest one.
+  const StoredPatch other = without(60);
+  PatchContacts fresh;
+  EXPECT_EQ(kappa_of(kept, other), kappa_of(fresh, other));
 }
 
 }  // namespace
