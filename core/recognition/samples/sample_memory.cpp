@@ -85,9 +85,6 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
   auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
     return is_of_one_stroke(patch.context, context);
   });
-  if (place != patches_.end() && place->context.material_side == MaterialSide::Unspecified) {
-    place->context.material_side = context.material_side;
-  }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const ContactSample& sample = samples[i];
     if (const SampleFault fault = fault_of(i, samples, details); fault != SampleFault::None) {
@@ -107,6 +104,7 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
       ++result.repeated;
       continue;
     }
+    place->context = continued(place->context, context);
     place->newest_m = sample.position_m;
     ++result.accepted;
     const bool detailed = !details.empty() && says_more(details[i]);

@@ -174,5 +174,20 @@ TEST(RepeatedTouches, AreAllAccountedFor) {
   EXPECT_EQ(clean.moved_count() + clean.dwelling_count(), touches.size());
 }
 
+TEST(CleanPatches, KeepNothingOfATipThatIsAnother) {
+  StoredPatch stroke;
+  for (int i = 0; i < 40; ++i) {
+    stroke.samples.push_back({0.02 * Vec2(std::cos(0.05 * i), std::sin(0.05 * i)), kOneSigma});
+  }
+  stroke.newest_m = stroke.samples.back().position_m;
+  CleanPatches clean;
+  clean.update({stroke}, 0.0, 0.01, test::unbounded_work());
+  stroke.context.material_side = MaterialSide::Left;
+  stroke.context.tip_radius_m = 1e-3;
+  clean.update({stroke}, 0.0, 0.01, test::unbounded_work());
+  EXPECT_EQ(clean.moved().front().context, stroke.context);
+  EXPECT_EQ(clean.clean().front().context, stroke.context);
+}
+
 }  // namespace
 }  // namespace palpate

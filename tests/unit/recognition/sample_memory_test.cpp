@@ -280,5 +280,19 @@ TEST(SampleMemory, BoundsOfNothingLeaveRoomForOne) {
   EXPECT_EQ(memory.sample_count() + forgotten, 10U * (1 + 21));
 }
 
+TEST(SampleMemory, ASideIsStatedBySamplesThatAreTaken) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  SampleMemory memory;
+  memory.add({}, std::vector{at(0.0), at(1.0)});
+  const PatchContext left{.material_side = MaterialSide::Left};
+  const PatchContext right{.material_side = MaterialSide::Right};
+  EXPECT_EQ(memory.add(left, std::vector{at(nan)}).accepted, 0U);
+  memory.add(right, std::vector{at(2.0)});
+  ASSERT_EQ(memory.patches().size(), 1U);
+  EXPECT_EQ(memory.patches().front().context.material_side, MaterialSide::Right);
+  memory.add(left, std::vector{at(3.0)});
+  EXPECT_EQ(memory.patches().size(), 2U);
+}
+
 }  // namespace
 }  // namespace palpate

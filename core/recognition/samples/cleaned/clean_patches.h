@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
 #include "core/numerics/work_budget.h"
@@ -11,11 +10,10 @@
 
 namespace palpate {
 
-/// Identifies a state of a patch in memory, which only grows at its end: equal versions mean an
-/// unchanged patch.
+/// Identifies a state of a patch in memory, whose samples only grow at their end: equal versions
+/// mean an unchanged patch.
 struct PatchVersion {
-  std::uint32_t probe = 0;
-  std::uint32_t patch = 0;
+  PatchContext context;
   std::size_t samples = 0;
   double contacts_per_sample = 0.0;
   Vec2 newest_m = Vec2::Zero();
@@ -24,8 +22,7 @@ struct PatchVersion {
 };
 
 inline PatchVersion version_of(const StoredPatch& patch) {
-  return {patch.context.probe, patch.context.patch, patch.samples.size(), patch.contacts_per_sample,
-          patch.newest_m};
+  return {patch.context, patch.samples.size(), patch.contacts_per_sample, patch.newest_m};
 }
 
 class CleanPatches {
