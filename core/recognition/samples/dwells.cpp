@@ -168,11 +168,16 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples, double d
     SlowStretch(samples, std::span(blocks).subspan(b, end - b), default_sigma_m).add_to(&dwells);
     b = std::max(end, b + 1);
   }
-  // Ranges that were widened may overlap.
-  for (std::size_t i = 1; i < dwells.size(); ++i) {
-    dwells[i].begin = std::max(dwells[i].begin, dwells[i - 1].end);
+  // Ranges that were widened may overlap. What is left a single sample, or none, has nothing to
+  // merge.
+  std::vector<PatchSpan> apart;
+  for (PatchSpan dwell : dwells) {
+    dwell.begin = std::max(dwell.begin, apart.empty() ? 0 : apart.back().end);
+    if (dwell.begin + 1 < dwell.end) {
+      apart.push_back(dwell);
+    }
   }
-  return dwells;
+  return apart;
 }
 
 std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples) {

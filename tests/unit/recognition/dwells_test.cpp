@@ -205,5 +205,48 @@ TEST_F(Dwells, APatchInNoOrderIsNoHeldTouch) {
   EXPECT_TRUE(dwells_of(samples).empty());
 }
 
+TEST_F(Dwells, ThatOverlapLeaveEachOtherSamplesToMerge) {
+  // A dwell beside one that scatters wider: the wide one reaches over all of the other but its last
+  // sample, after which the probe shakes itself loose.
+  constexpr double kStep = 100.0 * kNoise;
+  std::uniform_real_distribution<double> uniform;
+  std::size_t beside = 0;
+  for (int trial = 0; trial < 2000; ++trial) {
+    std::vector<StoredSample> samples;
+    Vec2 place = Vec2::Zero();
+    const auto travel = [&] {
+      for (int i = 0; i < 32; ++i) {
+        samples.push_back(sample_at(place));
+        place.x() += kStep;
+      }
+    };
+    travel();
+    const double wide = (0.005 + 0.145 * uniform(rng_)) * kStep;
+    for (int i = 0; i < 16; ++i) samples.push_back(sample_at(place + noise(wide)));
+    const Vec2 other = place + (0.5 + 2.5 * uniform(rng_)) * wide * Vec2::UnitY();
+    const double narrow = wide * std::exp(-9.0 + 8.0 * uniform(rng_));
+    for (int i = 0; i < 9; ++i) samples.push_back(sample_at(other + noise(narrow)));
+    const double growth = 1.0 + 2.0 * uniform(rng_);
+    double shake = wide * std::exp(-5.0 + 6.0 * uniform(rng_)) / std::pow(growth, 3.0);
+    for (int i = 0; i < 7; ++i) {
+      samples.push_back(sample_at(other + shake * Vec2::UnitX()));
+      shake *= -growth;
+    }
+    travel();
+    const std::vector<PatchSpan> dwells = dwells_of(samples);
+    for (std::size_t i = 0; i < dwells.size(); ++i) {
+      ASSERT_GE(dwells[i].end, dwells[i].begin + 2) << trial;
+      ASSERT_TRUE(i == 0 || dwells[i].begin >= dwells[i - 1].end) << trial;
+      beside += i > 0 && dwells[i].begin == dwells[i - 1].end ? 1 : 0;
+    }
+    StoredPatch patch;
+    patch.samples = samples;
+    for (const StoredSample& sample : with_means(patch, dwells, 0.0).samples) {
+      ASSERT_TRUE(std::isfinite(sample.weight)) << trial;
+    }
+  }
+  EXPECT_GT(beside, 0U);
+}
+
 }  // namespace
 }  // namespace palpate
