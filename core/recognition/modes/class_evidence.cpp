@@ -33,6 +33,7 @@ void set_mode(TouchedCurve mode, ClassEvidence* evidence) {
   evidence->log_occam_of_touch =
       0.5 * (evidence->fitted_chi2 - mode.chi2 - std::log(of_touch.determinant()));
   evidence->mode = 0;
+  evidence->widest = -1;
   evidence->nodes = {{std::move(mode), 1.0}};
 }
 

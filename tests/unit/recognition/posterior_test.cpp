@@ -218,6 +218,23 @@ TEST(ClassEvidence, DoesNotChangeWithTheUnitOrThePlace) {
   }
 }
 
+TEST(ClassEvidence, ByLaplacesFormulaHasNoSlicedCoordinate) {
+  auto rng = test::test_rng();
+  int sliced_ones = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    const Fitted fitted(scene_of(CurveClass::Ellipse, 0.2, 1e-3, 1, rng));
+    const auto fit = fitted.canonical(CurveClass::Ellipse);
+    const auto evidence = fit ? sliced(*fit, fitted.smooth.reduced) : std::nullopt;
+    if (evidence && evidence->widest >= 0) {
+      ++sliced_ones;
+      const ClassEvidence again = counted_from(evidence->fitted_chi2, *evidence);
+      EXPECT_EQ(again.nodes.size(), 1U);
+      EXPECT_EQ(again.widest, -1);
+    }
+  }
+  EXPECT_GT(sliced_ones, 0);
+}
+
 TEST(ClassEvidence, ABetterProbeLeavesLessOfThePrior) {
   // Each determined coordinate is worth a factor of ten for noise of a tenth.
   std::mt19937_64 rng = test::test_rng();
