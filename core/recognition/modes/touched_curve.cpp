@@ -4,47 +4,17 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <variant>
 
 #include "core/curves/curve.h"
 #include "core/numerics/matrices/triangular_root.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
+#include "core/recognition/modes/reference_point.h"
 #include "core/recognition/modes/trial_foot.h"
 #include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
 namespace {
-
-/// Whether a patch goes on at one of its points the way it came, over two points either way.
-bool goes_on(std::span<const FitPoint> patch, std::size_t i) {
-  constexpr std::size_t kPoints = 2;  // the next one may be the other of two at a tip
-  const Vec2& before = patch[i - std::min(i, kPoints)].position;
-  const Vec2& after = patch[std::min(i + kPoints, patch.size() - 1)].position;
-  const Vec2& here = patch[i].position;
-  return (here - before).dot(after - here) >= 0.0;
-}
-
-/// The middle point of the longest patch; of one that turns back, of its longest arm. A cusp has no
-/// tangent from which a curve could be seen, and next to one it turns round within the noise.
-std::size_t reference_point(const FitData& data) {
-  const auto longest =
-      std::max_element(data.patches.begin(), data.patches.end(),
-                       [](const PatchSpan& a, const PatchSpan& b) { return a.size() < b.size(); });
-  const std::span<const FitPoint> patch(data.points.data() + longest->begin, longest->size());
-  PatchSpan arm{0, 0};
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i <= patch.size(); ++i) {
-    if (i < patch.size() && goes_on(patch, i)) {
-      continue;
-    }
-    if (i - begin > arm.size()) {
-      arm = {begin, i};
-    }
-    begin = i + 1;
-  }
-  return longest->begin + (arm.size() > 0 ? arm.begin + arm.size() / 2 : patch.size() / 2);
-}
 
 /// How the shape, the place and the tangent there move with each coordinate of the shape, by
 /// central differences.
