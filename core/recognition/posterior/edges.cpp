@@ -170,15 +170,15 @@ SharpCorner corner_between(const std::array<Edge, 2>& edges, std::span<const Fit
 
 constexpr double kAnyChi2 = std::numeric_limits<double>::infinity();
 
-/// The optimum on `points` from `x`, in so many steps.
-MinimiseSummary refine(EdgesProblem* problem, std::span<const FitPoint> points, int steps,
-                       double out_of_reach, Vector* x, WorkBudget& work) {
+/// The optimum from `x`, in so many steps.
+MinimiseSummary refine(EdgesProblem* problem, int steps, double out_of_reach, Vector* x,
+                       WorkBudget& work) {
   constexpr double kTolerance = 1e-2;  // of chi-square; evidence is asked for to a tenth
   MinimiseOptions options{steps, kTolerance};
   options.out_of_reach = out_of_reach;
   options.work = &work;
   options.row = WorkKind::AxisRow;
-  options.rows = points.size();
+  options.rows = problem->points();
   return minimise(problem, x, options);
 }
 
@@ -279,7 +279,7 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
   // them right, and tell which points lie on the arc: before, no linear model holds.
   constexpr int kFirstSteps = 4;
   constexpr int kSteps = 20;
-  refine(&on_reduced, reduced, kFirstSteps, kAnyChi2, &x, work);
+  refine(&on_reduced, kFirstSteps, kAnyChi2, &x, work);
   // Beside edges that are right, the radius: where it leaves no point on the arc, or all, no step
   // leads to it.
   constexpr double kClosely = 1.19;  // 2^(1/4): nearer than any of these, the steps converge
@@ -287,7 +287,7 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
   if (on_reduced.chi2_at(other) < on_reduced.chi2_at(x)) {
     x = other;
   }
-  const MinimiseSummary coarse = refine(&on_reduced, reduced, kSteps, out_of_reach, &x, work);
+  const MinimiseSummary coarse = refine(&on_reduced, kSteps, out_of_reach, &x, work);
   if (!(coarse.chi2 <= out_of_reach)) {
     return std::nullopt;
   }
@@ -297,7 +297,7 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
   EdgesProblem* settled = &on_reduced;
   if (std::abs(chi2 - (arcs.smooth.chi2 + coarse.chi2)) > kLeastError) {
     // No section leads round a corner that is sharper than it is long.
-    chi2 = refine(&on_all, points, kSteps, kAnyChi2, &x, work).chi2;
+    chi2 = refine(&on_all, kSteps, kAnyChi2, &x, work).chi2;
     settled = &on_all;
   }
   // Where two edges lie within the noise of one another, the nearest of both leaves less than the
@@ -312,9 +312,11 @@ std::optional<Edges> edges_of(const Arcs& arcs, double out_of_reach, WorkBudget&
     if (std::abs(ordered.chi2_at(x) - chi2) <= kLeastError) {
       break;
     }
-    chi2 = refine(&ordered, points, kSteps, kAnyChi2, &x, work).chi2;
+    chi2 = refine(&ordered, kSteps, kAnyChi2, &x, work).chi2;
     settled = &ordered;
   }
+  settled->chi2_at(x);
+  settled->accept();
   Edges edges{corner_of(x), chi2, {}};
   Vector gradient;
   settled->linearise(&edges.information, &gradient);

@@ -7,6 +7,7 @@
 #include <iostream>
 #include <limits>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "core/curves/curve.h"
@@ -139,6 +140,45 @@ TEST(Edges, DenseNoisyStrokesOfACubicAreNotBetweenTwo) {
     }
   }
   EXPECT_LE(none, test::most_of_poisson(stated));
+}
+
+/// Of each coordinate of the corner, by distances of all samples.
+Eigen::Matrix<double, 1, kEdgesCoordinates> information_of(const RoundedCorner& corner,
+                                                           std::span<const FitPoint> points) {
+  Eigen::Matrix<double, 1, kEdgesCoordinates> sum = decltype(sum)::Zero();
+  for (const FitPoint& point : points) {
+    RoundedCorner::Row row = point.inverse_sigma * corner.distance(point.position).gradient;
+    row[4] *= corner.radius;  // by its logarithm
+    sum += row.cwiseAbs2();
+  }
+  return sum;
+}
+
+// What the edges cost of their prior rests on it.
+TEST(Edges, HaveTheInformationOfTheCornerTold) {
+  std::mt19937_64 rng = test::test_rng();
+  int told = 0;
+  for (int i = 0; i < test::stress_count(50); ++i) {
+    constexpr double kSigma = 0.01;  // of the spacing of samples
+    constexpr double kRadius = 8.0;
+    StoredPatch patch;
+    for (const Vec2& place : over_edge(40.0, 30.0, kRadius, test::uniform(rng, 0.8, 2.0), rng)) {
+      patch.samples.push_back({place + test::normal_pair(rng, kSigma), kSigma});
+    }
+    const Arcs arcs = smooth_arcs(make_fit_data({&patch, 1}, 0.0));
+    WorkBudget work;
+    const auto edges = edges_of(arcs, std::numeric_limits<double>::infinity(), work);
+    if (!edges) {
+      continue;
+    }
+    ++told;
+    const auto of_all = information_of(edges->corner, arcs.data.points);
+    for (int k = 0; k < kEdgesCoordinates; ++k) {
+      // Points between edge and arc are of either: a few of the 16 on the arc.
+      EXPECT_NEAR(edges->information(k, k) / of_all[k], 1.0, 0.25) << i << " coordinate " << k;
+    }
+  }
+  EXPECT_GT(told, 0);
 }
 
 /// Samples of a semi-cubical parabola, stroked over the cusp. `chi2` receives what the curve leaves
