@@ -75,7 +75,7 @@ PolynomialFit refined(const AxisFit& walked, const FitData& reduced, double out_
 std::size_t most_refined(const std::vector<AxisFit>& walked, const FitData& reduced) {
   const bool are_touches =
       std::all_of(reduced.patches.begin(), reduced.patches.end(),
-                  [](const PatchSpan& patch) { return patch.size() == 1 || patch.is_joined; });
+                  [](const PatchSpan& patch) { return patch.size() <= 1 || patch.is_joined; });
   const bool have_arms = !walked.empty() && !walked.front().arms.empty();
   return are_touches && have_arms ? walked.size() : std::min<std::size_t>(walked.size(), 1);
 }

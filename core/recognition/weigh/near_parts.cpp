@@ -27,9 +27,10 @@ constexpr std::array kScatter = {0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.00781
 /// millionth of the half extent, and kLargestNoise.
 const double kLogOfNoises = std::log(2.0 * std::log(kLargestNoise / 1e-6));
 
+/// (A touch that was set aside has left an empty patch.)
 bool all_lie_apart(const FitData& data) {
   return std::all_of(data.patches.begin(), data.patches.end(),
-                     [](const PatchSpan& patch) { return patch.size() == 1; });
+                     [](const PatchSpan& patch) { return patch.size() <= 1; });
 }
 
 /// The same points with `factor` times their noise. What normals are off by where a place is not

@@ -69,7 +69,7 @@ struct Directed {
 /// Whether the way of each tip is seen.
 bool are_strokes(const FitData& touches) {
   return std::all_of(touches.patches.begin(), touches.patches.end(),
-                     [](const PatchSpan& patch) { return patch.size() > 1; });
+                     [](const PatchSpan& patch) { return patch.size() != 1; });
 }
 
 /// What the tips do not show by themselves comes from edges that their centres lie on, or from the
@@ -328,7 +328,11 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
       second = std::max(second, evidences[i]);
     }
   }
-  sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
+  if (sided->choices.size() > 1 && !std::isfinite(evidences[sided->taken])) {
+    sided->margin = 0.0;  // nothing tells one from another
+  } else {
+    sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
+  }
 }
 
 }  // namespace
