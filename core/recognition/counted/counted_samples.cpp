@@ -149,7 +149,7 @@ Weighed CountedSamples::with_ends(Weighed weighed, WorkBudget& work) const {
   auto again = again_with(*std::move(more), weighed.w.starts, weighed.w.best, {}, work);
   const bool fits =
       again && again->outliers.empty() &&
-      can_be_noise(again->w.counted_chi2, static_cast<double>(residual_count(again->w.data)));
+      can_be_noise(again->w.counted_chi2, static_cast<double>(again->w.residuals[again->w.best]));
   return fits ? *std::move(again) : std::move(weighed);
 }
 

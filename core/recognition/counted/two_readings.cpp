@@ -46,9 +46,10 @@ double log_density_of(const Weighed& reading, const ExplainingCurve& curve,
   return log_density + log_density_of(spikes, curve, 2.0 * w.data.scale);
 }
 
-/// Whether a fit lies outside of what another one of its class publishes as its 95 % ellipsoid.
-/// (One sample more or less seldom leads so far, unless the shape rests on it.)
-bool is_another(const CanonicalFit& fit, const CanonicalFit& told) {
+/// Whether a fit lies outside of the 95 % ellipsoid of another one of its class, whose covariance is
+/// `inflation` times what its fit has. (One sample more or less seldom leads so far, unless the
+/// shape rests on it.)
+bool is_another(const CanonicalFit& fit, const CanonicalFit& told, double inflation) {
   constexpr double kBeyond = 0.05;
   const Eigen::Index n = told.covariance.rows() - 3;  // parameters of the shape
   const Pose2& from = told.world_T_curve;
@@ -56,7 +57,7 @@ bool is_another(const CanonicalFit& fit, const CanonicalFit& told) {
   Eigen::VectorXd step(n + 3);
   step << (fit.shape.values - told.shape.values).head(n), to.x - from.x, to.y - from.y,
       wrap_angle(to.theta - from.theta);
-  const double square = mahalanobis_square(step, told.covariance);
+  const double square = mahalanobis_square(step, told.covariance) / inflation;
   return !(chi_square_survival(square, static_cast<int>(n + 3)) > kBeyond);
 }
 
@@ -74,6 +75,10 @@ Weighed with_share_of(Weighed rest, double share, Weighed told) {
     if (i != static_cast<std::size_t>(w.best) && by_rest > by_told && rest.w.fits[i]) {
       w.fits[i] = std::move(rest.w.fits[i]);
       w.canonical[i] = std::move(rest.w.canonical[i]);
+      w.residuals[i] = rest.w.residuals[i];
+      if (w.canonical[i]) {
+        w.canonical[i]->covariance *= rest.w.inflation / w.inflation;
+      }
     }
   }
   for (double& probability : by_both) {
@@ -84,7 +89,7 @@ Weighed with_share_of(Weighed rest, double share, Weighed told) {
     probability /= sum;
   }
   w.probabilities = by_both;
-  if (rest.w.best == w.best && is_another(*rest.w.canonical[w.best], *w.canonical[w.best])) {
+  if (rest.w.best == w.best && is_another(*rest.w.canonical[w.best], *w.canonical[w.best], w.inflation)) {
     w.rival_share = std::max(w.rival_share, share);
   }
   return told;

@@ -88,6 +88,23 @@ std::vector<std::size_t> wrong_normals(const CanonicalFit& placed, const FitData
   return wrong.size() <= most_set_aside(misses.size()) ? wrong : std::vector<std::size_t>{};
 }
 
+/// Of the normals along strokes that count.
+double squares_of_normals(const CanonicalFit& placed, const FitData& data) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    if (data.details[i].inverse_normal_sigma > 0.0 && has_normal(data.points[i])) {
+      squares += placed.points[i].normal_residual * placed.points[i].normal_residual;
+    }
+  }
+  return squares;
+}
+
+/// Form error moves places: normals count as they are.
+double counted_in_full(double chi2, double of_normals, const Weighing& w) {
+  const Likelihood& law = w.seen.likelihood ? *w.seen.likelihood : w.stated;
+  return misfit_of(chi2 - of_normals, law) + of_normals;
+}
+
 /// Reduced points with the normals of their samples: each turned from the path's as they are in the
 /// mean, so that how the path turns from sample to sample does not matter.
 FitData reduced_with_normals(const Weighing& w, const FitData& data) {
@@ -151,7 +168,7 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
     w.best_evidence = w.best_on_reduced
                           ? evidence_of(*w.best_on_reduced, w.reduced, w.inflation, work)
                           : std::nullopt;
-    w.stroke_normals = residual_count(full) - residual_count(w.data);
+    w.residuals[w.best] = residual_count(full);
   }
   for (std::size_t i = 0; i < full.details.size(); ++i) {
     PointDetail& left = w.data.details[i];
@@ -160,7 +177,7 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
       left.inverse_normal_sigma = 0.0;
     }
   }
-  w.counted_chi2 += placed->fit.chi2 - w.fits[w.best]->chi2;
+  w.counted_chi2 = counted_in_full(placed->fit.chi2, squares_of_normals(placed->canonical, full), w);
   w.fits[w.best] = std::move(placed->fit);
   w.canonical[w.best] = std::move(placed->canonical);
   return w;

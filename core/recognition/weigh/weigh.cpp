@@ -183,6 +183,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.sigma = arcs.sigma;
   w.data = std::move(arcs.data);
   w.smooth = std::move(arcs.smooth);
+  w.residuals.fill(residual_count(w.data));
   return w;
 }
 

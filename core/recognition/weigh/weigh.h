@@ -68,9 +68,9 @@ struct Weighing {
   /// Factor on covariances: correlation, misfit, few residuals and stated form error.
   double inflation = 1.0;
   double counted_chi2 = 0.0;  ///< chi-square of `best` for the misfit test (misfit_of)
-  /// Normals along strokes that chi-square, shape, pose and covariance of `best` hold, no others'
-  /// (best_in_full.h).
-  std::size_t stroke_normals = 0;
+  /// Of which each class's chi-square is the sum of squares: of `data`, of the best also normals
+  /// along strokes (best_in_full.h).
+  ByClass<std::size_t> residuals{};
 };
 
 /// `data`: from make_fit_data. Follows core/README.md, "Refinement and the bound" and "The
