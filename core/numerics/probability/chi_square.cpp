@@ -97,8 +97,11 @@ double approximate_threshold(double significance, int dof) {
 }  // namespace
 
 double chi_square_survival(double chi2, int dof) {
-  if (dof <= 0 || !(chi2 > 0.0)) {
+  if (dof <= 0 || chi2 <= 0.0) {
     return 1.0;
+  }
+  if (std::isnan(chi2)) {
+    return chi2;
   }
   return std::isinf(chi2) ? 0.0 : tail_of(chi2, dof).survival;
 }

@@ -35,6 +35,7 @@ TEST(ChiSquare, AgreesWithTabulatedValues) {
   EXPECT_EQ(chi_square_threshold(0.05, 0), 0.0);
   EXPECT_NEAR(chi_square_survival(124.342, 100), 0.05, 1e-6);
   EXPECT_EQ(chi_square_survival(0.0, 5), 1.0);
+  EXPECT_TRUE(std::isnan(chi_square_survival(std::numeric_limits<double>::quiet_NaN(), 5)));
   for (const int dof : {1, 2, 3, 4}) {
     EXPECT_EQ(chi_square_survival(std::numeric_limits<double>::infinity(), dof), 0.0);
   }
