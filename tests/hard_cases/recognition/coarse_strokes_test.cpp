@@ -114,5 +114,44 @@ TEST(CoarseStrokes, SemiCubicalParabolaIsNoSpline) {
   });
 }
 
+/// There and back along an arc, so many samples each way.
+std::vector<Vec2> back_and_forth(const std::function<Vec2(double)>& curve, double from, double to,
+                                 int passes, int each) {
+  std::vector<Vec2> places;
+  for (int i = 0; i <= passes * each; ++i) {
+    const double on = std::abs(std::fmod(static_cast<double>(i) / each + 1.0, 2.0) - 1.0);
+    places.push_back(curve(from + (to - from) * on));
+  }
+  return places;
+}
+
+TEST(CoarseStrokes, BackAndForthAreOfTheSameClass) {
+  const auto passes = [](std::mt19937_64& rng) {
+    return static_cast<int>(uniform(rng, 2.0, 11.0));
+  };
+  const auto each = [](std::mt19937_64& rng) { return static_cast<int>(uniform(rng, 5.0, 13.0)); };
+  expect_honest("ellipse", CurveClass::Ellipse, [&](std::mt19937_64& rng) {
+    const double b = uniform(rng, 0.5, 0.8);
+    const auto ellipse = [b](double t) { return Vec2(std::cos(t), b * std::sin(t)); };
+    return Strokes{back_and_forth(ellipse, 0.3, uniform(rng, 2.3, 2.8), passes(rng), each(rng))};
+  });
+  expect_honest("cubical parabola", CurveClass::CubicalParabola, [&](std::mt19937_64& rng) {
+    const double c = uniform(rng, -0.4, -0.2);
+    const auto cubical = [c](double t) { return Vec2(t, (0.6 * t * t + c) * t); };
+    return Strokes{back_and_forth(cubical, -1.0, uniform(rng, 0.8, 1.0), passes(rng), each(rng))};
+  });
+}
+
+// The work that an answer may take grows with the passes, as it does with strokes.
+TEST(CoarseStrokes, ManyPassesAreNoMoreWorkThanMayBe) {
+  std::mt19937_64 rng = test::test_rng();
+  const auto parabola = [](double t) { return Vec2(t * t, 2.0 * t); };
+  for (int i = 0; i < 20; ++i) {
+    const Recognition answer =
+        answer_to({back_and_forth(parabola, -1.2, uniform(rng, 1.0, 1.2), 10, 25)}, 2e-3, rng);
+    EXPECT_NE(answer.doubt, Doubt::WorkLimit) << i;
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -73,15 +73,18 @@ TEST(Passes, AreCutWhereAStrokeTurnsBackOverItself) {
 
 // Shorter than the blocks by which noise is estimated, with chords that the way bends away from.
 // Each pass begins at the farthest place, which is the turn.
-TEST(Passes, OfTenSamplesAreCutWhereTheNoiseIsStated) {
+TEST(Passes, OfFewSamplesAreCutWhereTheNoiseIsStated) {
   std::mt19937_64 rng(21);
   const auto arc = [](const Way& way) { return Way([way](double u) { return way(0.5 * u); }); };
   for (const Way& way : {arc(circle), arc(ellipse)}) {
     for (const double sigma_m : {1e-6, 1e-5, 5e-5}) {
       for (int seed = 0; seed < 20; ++seed) {
-        const auto samples = strokes(way, 4, 10, rng, sigma_m);
-        EXPECT_EQ(reversals_of(samples, sigma_m).returns, (std::vector<std::size_t>{11, 21, 31}))
-            << sigma_m;
+        for (const std::size_t each : {5, 10}) {
+          const auto samples = strokes(way, 4, static_cast<int>(each), rng, sigma_m);
+          EXPECT_EQ(reversals_of(samples, sigma_m).returns,
+                    (std::vector<std::size_t>{each + 1, 2 * each + 1, 3 * each + 1}))
+              << sigma_m << " " << each;
+        }
       }
     }
   }
@@ -92,8 +95,10 @@ TEST(Passes, AStrokeThatOnlyBendsIsOne) {
   for (const Way& way : {Way(circle), Way(over_a_cusp), Way(round_a_needle)}) {
     for (const double sigma_m : {1e-9, 1e-6, 1e-5}) {
       for (const int each : {12, 60, 300, 3000}) {
-        EXPECT_TRUE(reversals_of(strokes(way, 1, each, rng, sigma_m), kUnknown).returns.empty())
-            << sigma_m << " " << each;
+        for (const double stated_m : {kUnknown, sigma_m}) {
+          EXPECT_TRUE(reversals_of(strokes(way, 1, each, rng, sigma_m), stated_m).returns.empty())
+              << sigma_m << " " << each << " " << stated_m;
+        }
       }
     }
   }

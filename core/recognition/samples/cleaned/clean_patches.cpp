@@ -35,7 +35,7 @@ std::vector<std::size_t> among_all(std::span<const StoredSample> all,
   constexpr std::size_t kBehind = 4;
   std::vector<std::size_t> result;
   for (const std::size_t k : turns) {
-    const std::size_t behind = kept[k - 1 - kBehind];
+    const std::size_t behind = kept[k - 1 - std::min(k - 1, kBehind)];
     const Vec2 way = all[kept[k - 1]].position_m - all[behind].position_m;
     std::size_t turn = behind;
     for (std::size_t i = behind + 1; i < kept[k]; ++i) {

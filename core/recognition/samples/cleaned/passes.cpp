@@ -14,7 +14,11 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kFewestOfPass = 6;
+/// A run of spikes is shorter.
+constexpr std::size_t kFewestOfPass = kLongestRunOfSpikes + 1;
+
+/// An arm of a cusp has to show a path of its own, beside which spikes are seen.
+constexpr std::size_t kFewestOfArm = 6;
 
 /// The samples on the path of the stroke, by index: spikes turn it back too.
 std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
@@ -32,7 +36,7 @@ std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
 
 /// True if the stroke steps back anywhere, over a few samples: a quick test. Noise may do so too.
 bool steps_back(std::span<const StoredSample> samples) {
-  constexpr std::size_t kFew = 4;
+  constexpr std::size_t kFew = kFewestOfPass / 2;
   for (std::size_t i = 2 * kFew; i < samples.size(); ++i) {
     const Vec2 before = samples[i - kFew].position_m - samples[i - 2 * kFew].position_m;
     const Vec2 after = samples[i].position_m - samples[i - kFew].position_m;
@@ -47,11 +51,9 @@ struct Lengths {
   /// Noise does not move a sample so far off its path, nor does the path bend so far away from the
   /// way between two samples.
   double beside_m = 0.0;
-  /// Noise does not put two samples so far apart. At least four median steps, because where the
-  /// noise is as large as a patch, its estimate means nothing.
+  /// Noise does not put two samples so far apart. At least four median steps where it is not
+  /// stated, because where it is as large as a patch, its estimate means nothing; else one.
   double far_m = 0.0;
-  /// Nor does it reach so far from a turn: one step where it is stated.
-  double clear_m = 0.0;
 };
 
 /// The median second difference of the path, which places where it turns back, and single spikes,
@@ -95,8 +97,8 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   const double noise_m = kFarDeviations * sigma_m;
   const double step_m = median_of(steps);
   const double bend_m = second_m / 4.0;  // a chord's height is an eighth of it: twice that
-  return Lengths{std::max(noise_m, bend_m), std::max(noise_m, kFarSteps * step_m),
-                 std::max(noise_m, (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m)};
+  const double steps_m = (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m;
+  return Lengths{std::max(noise_m, bend_m), std::max(noise_m, steps_m)};
 }
 
 /// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
@@ -137,7 +139,7 @@ Compared compared(std::span<const StoredSample> before, std::span<const StoredSa
     const double off = (place - turn).norm();
     const auto beside = distance_from(before, place);
     result.beyond += beside ? 0 : 1;
-    if (beside && off > lengths.clear_m) {
+    if (beside && off > lengths.far_m) {
       ++result.places;
       result.on += *beside <= std::max(lengths.beside_m, kBeside * off) ? 1 : 0;
     }
@@ -191,7 +193,7 @@ Reversals reversals_of_path(std::span<const StoredSample> samples, double defaul
                    *lengths)) {
       turns.returns.push_back(turn);
       begin = turn;
-    } else if (is_long && goes_on && turn - before >= kFewestOfPass) {
+    } else if (end - turn >= kFewestOfArm && goes_on && turn - before >= kFewestOfArm) {
       turns.cusps.push_back(turn);
     }
     before = turn;
