@@ -146,7 +146,7 @@ class Fit(unittest.TestCase):
         self.assertEqual(result.status, "collecting")
         with self.assertRaisesRegex(ValueError, "no curve was found"):
             result.residuals([[0, 0]])
-        for arguments in (dict(unit="furlong"), dict(sigma=-1), dict(sigma=[1, 2]), dict(classes=["sphere"]),
+        for arguments in (dict(unit="furlong"), dict(sigma=-1), dict(sigma=[1, 2]), dict(classes=["sphere"]), dict(classes=None),
                           dict(material_side="up"), dict(sigma=math.nan), dict(tip_radius=-1), dict(tip_radius=math.inf),
                           dict(form_deviation=-1)):
             with self.assertRaises(ValueError, msg=arguments):
@@ -507,6 +507,7 @@ class Fit(unittest.TestCase):
                      dict(normals=2 * normals, normal_sigma=0.01), dict(normals=normals, normal_sigma=0),
                      dict(normals=normals, normal_sigma=[0.01, 0.01]), dict(normals=normals, normal_sigma=math.nan),
                      dict(covariances=np.full(5, SIGMA**2)), dict(covariances=-good), dict(covariances=np.stack([good] * 4)),
+                     dict(covariances=good, sigma=SIGMA),
                      dict(covariances=good + [[0, SIGMA**2 / 2], [0, 0]]), dict(covariances=np.full((2, 2), math.nan))):
             with self.assertRaises(ValueError, msg=said):
                 recognizer.add(points, **said)

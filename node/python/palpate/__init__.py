@@ -58,6 +58,8 @@ class Recognizer:
         self._scale = units(unit)
         if unqualified_probe is not None and not isinstance(unqualified_probe, (bool, np.bool_)):
             raise ValueError(f"unqualified_probe: {unqualified_probe!r} is none of True, False and None")
+        if not isinstance(classes, Iterable):
+            raise ValueError(f"classes: {classes!r}: must be names; () for all")
         self._core = _core.Recognizer(self._scale * (0.0 if sigma is None else length("sigma", sigma, zero_too=False)),
                                       [classes] if isinstance(classes, str) else list(classes),
                                       self._scale * length("form_deviation", form_deviation), unqualified_probe,
@@ -89,6 +91,8 @@ class Recognizer:
         points."""
         points = numbers(points)
         tip_radius = length("tip_radius", tip_radius)
+        if sigma is not None and covariances is not None:
+            raise ValueError("sigma, covariances: one of them states the noise")
         if sigma is not None and np.ndim(sigma) == 0:
             sigma = length("sigma", sigma, zero_too=False)
         in_metres = points if self._scale == 1.0 else self._scale * points
