@@ -30,15 +30,28 @@ LocalGeometry CubicSpline::geometry(double t) const {
 
 namespace {
 
-/// (C - p) . C' = 2 t (t^2 - x) + (a t^3 + b t^2 + c t - y)(3 a t^2 + 2 b t + c), which is 0 at
-/// feet.
-Polynomial<5> foot_condition(const CubicSpline& curve, const Vec2& point) {
-  const auto [a, b, c] = curve;
-  const double x = point.x();
-  const double y = point.y();
+/// A place of the curve where its x is the point's, on the arm that is nearer to the point there;
+/// the vertex for a point behind it.
+double place_beside(const CubicSpline& curve, const Vec2& point) {
+  const double root = std::sqrt(std::max(point.x(), 0.0));
+  const auto off = [&](double t) { return std::abs(curve.position(t).y() - point.y()); };
+  return off(root) <= off(-root) ? root : -root;
+}
+
+/// (C - p) . C' about a place t of the curve, by u: 0 at the feet t + u. About the vertex, far from
+/// which a spline is nearly a cubical parabola, the same roots would be small differences of terms
+/// that grow with the fifth power of t: feet were lost by a thousandth of the part.
+Polynomial<5> foot_condition(const CubicSpline& curve, double t, const Vec2& point) {
+  const double a = curve.a;
+  const CurveDerivatives at = curve.derivatives(t);
+  const Vec2 away = at.position - point;
+  const double x1 = at.first.x();
+  const double y1 = at.first.y();
+  const double y2 = 0.5 * at.second.y();
   Polynomial<5> condition;
-  condition << -c * y, c * c - 2.0 * x - 2.0 * b * y, 3.0 * b * c - 3.0 * a * y,
-      2.0 + 2.0 * b * b + 4.0 * a * c, 5.0 * a * b, 3.0 * a * a;
+  condition << away.dot(at.first), at.first.squaredNorm() + away.dot(at.second),
+      3.0 * (x1 + y1 * y2 + a * away.y()), 2.0 + 2.0 * y2 * y2 + 4.0 * a * y1, 5.0 * a * y2,
+      3.0 * a * a;
   return condition;
 }
 
@@ -48,16 +61,18 @@ FootPoint CubicSpline::foot_point(const Vec2& point) const {
   if (!point.allFinite()) {
     return no_foot_point(*this);
   }
+  const double beside = place_beside(*this, point);
   return nearest_foot_point(*this, point, [&](const auto& visit) {
-    visit_real_roots<5>(foot_condition(*this, point), visit);
+    visit_real_roots<5>(foot_condition(*this, beside, point), [&](double u) { visit(beside + u); });
   });
 }
 
 FootPlaces all_feet(const CubicSpline& curve, const Vec2& point) {
   FootPlaces places;
-  visit_real_roots<5>(foot_condition(curve, point), [&](double t) {
-    if (is_nearest_beside(curve, t, point)) {
-      places.add(t);
+  const double beside = place_beside(curve, point);
+  visit_real_roots<5>(foot_condition(curve, beside, point), [&](double u) {
+    if (is_nearest_beside(curve, beside + u, point)) {
+      places.add(beside + u);
     }
   });
   return places;

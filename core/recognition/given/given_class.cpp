@@ -258,6 +258,26 @@ void tell_others(const Explored& explored, const LocalPoints& local, const Given
   }
 }
 
+/// Whether the rounding of a spline's parameters moves it by less than the noise does: of one with
+/// its vertex far away they may be exact to the last digit, and yet no curve near the points.
+/// `variance`: of the residuals' unit.
+bool is_held_by_double(const PlacedCurve<Exact>& spline, const LocalPoints& local,
+                       double variance) {
+  constexpr double kPartOfNoise = 0.1;  // adds a hundredth to its variance
+  const auto size_of = [](const Exact& value) { return std::abs(to_double(value)); };
+  double t = 0.0;
+  double weight = 0.0;
+  for (std::size_t i = 0; i < spline.feet.size(); ++i) {
+    t = std::max(t, size_of(spline.feet[i].x));
+    weight = std::max(weight, to_double(local.exact[i].weight));
+  }
+  const double terms = ((size_of(spline.shape[0]) * t + size_of(spline.shape[1]) + 1.0) * t +
+                        size_of(spline.shape[2])) *
+                       t;
+  return std::numeric_limits<double>::epsilon() * terms * weight <
+         kPartOfNoise * std::sqrt(variance);
+}
+
 /// Why the points tell no curve of the class, or nullopt.
 std::optional<GivenStatus> lacking(CurveClass curve_class, const LocalPoints& local) {
   if (different(local.rough) + local.normals <
@@ -357,6 +377,10 @@ GivenFit fit_given_class(CurveClass curve_class, std::span<const GivenPoint> poi
   const ShapePoseCovariance of_unknowns =
       report_covariance(exact.placed, exact.descent.squares, *local, reach, &fit);
   const double variance = variance_of(found.cost, dof, *local, stated);
+  if (curve_class == CurveClass::CubicSpline &&
+      !is_held_by_double(exact.placed, *local, variance)) {
+    fit.status = GivenStatus::NotDetermined;
+  }
   tell_others(explored, *local, noise, dof, of_unknowns, variance, &fit);
   report_residuals(&exact.placed, *local, points, &fit);
   report_noise(points, *local, stated, options.sigma_m, 2.0 * to_double(exact.descent.squares.cost),

@@ -35,7 +35,9 @@ enum class GivenStatus {
   /// The sum of squares falls along a valley in which the search has not come to an end, and no
   /// other class, nor two parallel lines, that the class turns into fit as well as a curve in it.
   Unfinished,
-  NotDetermined,  ///< rounding of the coordinates leaves a shape parameter as uncertain as its size
+  /// Rounding of the coordinates leaves a shape parameter as uncertain as its size, or that of the
+  /// parameters moves the curve by more than a tenth of the noise.
+  NotDetermined,
 };
 
 /// Lower-case words ("too few points").

@@ -8,6 +8,7 @@
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/starts/few_points.h"
 #include "core/recognition/given/all_starts.h"
+#include "core/recognition/given/as_polynomial.h"
 #include "core/recognition/given/foot_weights.h"
 #include "core/recognition/given/placed/curve_moves.h"
 #include "core/recognition/given/placed/seated_feet.h"
@@ -216,6 +217,9 @@ void settle(const LocalPoints& local, const GivenNoise& noise, GivenCandidate* c
       break;
     }
     descend_on(candidate->points, on_all, candidate);
+  }
+  if (held.none()) {
+    descend_as_polynomial(local, noise.stated, candidate);
   }
   candidate->misfit = misfit_of(*candidate, local, noise.stated);
 }

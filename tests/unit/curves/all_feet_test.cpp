@@ -70,5 +70,25 @@ TEST(AllFeet, AreTheLocalMinimaOfTheDistance) {
   EXPECT_GT(expect_all_minima(CubicSpline{0.7, 0.4, -0.3}, false), 20);
 }
 
+/// A spline that is nearly a cubical parabola, 1e7 half extents from its vertex.
+TEST(AllFeet, AreFoundFarFromTheVertex) {
+  const CubicSpline spline{50834.2, -3.02176e+06, 5.98747e+07};
+  constexpr double kMiddle = 19.814;  // of the part that is like a cubical parabola
+  for (int i = -20; i <= 20; ++i) {
+    const double t = kMiddle + 1e-3 * i;
+    const CurveDerivatives at = spline.derivatives(t);
+    constexpr double kOff = 1e-3;
+    const Vec2 point = at.position + kOff * left_of(at.first).normalized();
+    // Places are 6e-8 apart there.
+    EXPECT_NEAR(spline.foot_point(point).distance, kOff, 1e-6) << i;
+    const FootPlaces feet = all_feet(spline, point);
+    const auto nearest =
+        std::min_element(feet.t.begin(), feet.t.begin() + feet.count,
+                         [&](double u, double v) { return std::abs(u - t) < std::abs(v - t); });
+    ASSERT_GT(feet.count, 0U) << i;
+    EXPECT_NEAR((*nearest - t) * at.first.norm(), 0.0, 1e-6) << i;
+  }
+}
+
 }  // namespace
 }  // namespace palpate

@@ -1,0 +1,98 @@
+// Splines that are nearly cubical parabolas, as parts drawn otherwise often are: of a small
+// quadratic term q in x, their vertex lies q^-3 extents away.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <random>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/recognition/fit/orthogonal/polynomial_fit.h"
+#include "core/recognition/given/given_class.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+/// One stroke along an arc of such a spline.
+struct NearCubical {
+  std::vector<Vec2> touched_m;
+  double sigma_m = 0.0;
+  double chi2_of_truth = 0.0;  ///< distances of the points from the true curve
+};
+
+/// `least_q`, `most_q`: of the quadratic term of x over the linear one, at the end of the arc.
+NearCubical near_cubical(double least_q, double most_q, double sigma, int count,
+                         std::mt19937_64& rng) {
+  const double theta = test::uniform(rng, -kPi, kPi);
+  const Vec2 x(std::cos(theta), std::sin(theta));
+  PolynomialFit truth;
+  PolynomialCoefficients& c = truth.coefficients;
+  c.col(1) = x + test::uniform(rng, -1.0, 1.0) * left_of(x);
+  c.col(2) = test::random_sign(rng) * test::log_uniform(rng, least_q, most_q) * x +
+             test::uniform(rng, -1.0, 1.0) * left_of(x);
+  c.col(3) = test::random_sign(rng) * test::uniform(rng, 0.5, 1.5) * left_of(x);
+  NearCubical scene;
+  scene.sigma_m = sigma;  // of a half extent of about 1
+  std::normal_distribution<double> normal(0.0, sigma);
+  for (int i = 0; i < count; ++i) {
+    const double t = 2.0 * i / (count - 1) - 1.0;
+    const double along = normal(rng);
+    FitPoint point;
+    point.position = position_at(c, t) + Vec2(along, normal(rng));
+    scene.touched_m.push_back(point.position);
+    const double residual = place_on(truth, t, point).signed_distance / sigma;
+    scene.chi2_of_truth += residual * residual;
+  }
+  return scene;
+}
+
+/// Chi-square of the curve in the parameters that are told.
+double chi2_as_told(const GivenFit& fit, const NearCubical& scene) {
+  const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
+  double chi2 = 0.0;
+  for (const Vec2& touched_m : scene.touched_m) {
+    const double residual =
+        foot_point(*curve, fit.world_T_curve.to_local(touched_m)).distance / scene.sigma_m;
+    chi2 += residual * residual;
+  }
+  return chi2;
+}
+
+TEST(NearCubicalSplines, AGivenOneIsOfLeastSquaresOrNotTold) {
+  const int scenes = test::stress_count(60);
+  constexpr int kCount = 60;
+  int fitted = 0;
+  for (int i = 0; i < scenes; ++i) {
+    std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
+    const double sigma = test::log_uniform(rng, 1e-5, 3e-3);
+    // Nearer to the cubical parabola the points do not tell it from one.
+    const NearCubical scene = near_cubical(10.0 * sigma, 0.1, sigma, kCount, rng);
+    std::vector<GivenPoint> points;
+    for (const Vec2& touched_m : scene.touched_m) {
+      GivenPoint& point = points.emplace_back();
+      point.position_m = touched_m;
+      point.sigma_m = sigma;
+      point.stroke = 1;
+    }
+    const GivenFit fit = fit_given_class(CurveClass::CubicSpline, points);
+    if (fit.status != GivenStatus::Fitted) {
+      continue;
+    }
+    ++fitted;
+    // Nothing fits better than least squares, to their rounding.
+    EXPECT_LE(fit.chi2, scene.chi2_of_truth + 1e-6 * kCount) << i;
+    // Rounding of the parameters moves the curve by a tenth of the noise at most.
+    EXPECT_LE(std::sqrt(chi2_as_told(fit, scene)), std::sqrt(fit.chi2) + 0.1 * std::sqrt(kCount))
+        << i;
+  }
+  std::cout << "of " << scenes << ": fitted " << fitted << '\n';
+  if (test::counts_tell()) {
+    EXPECT_GE(10 * fitted, 9 * scenes);
+  }
+}
+
+}  // namespace
+}  // namespace palpate
