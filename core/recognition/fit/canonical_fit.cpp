@@ -297,6 +297,9 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   CanonicalFit canonical;
   canonical.shape = placement->shape;
   canonical.world_T_curve = placement->world_T_curve;
+  if (fit.curve_class == CurveClass::CubicSpline) {
+    canonical.polynomial = fit.polynomial->coefficients;
+  }
   const Pose2& frame_T_curve = placement->frame_T_curve;
   const auto curve = make_curve(canonical.shape.curve_class, canonical.shape.values);
   const auto letters =
@@ -323,6 +326,7 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
       fitted.t = parameter_of(canonical.shape, local);
     } else {
       const double t = fit.polynomial->t[i];
+      fitted.polynomial_t = t;
       fitted.t = placement->t_scale * t + placement->t_shift;
       const PlacedPoint placed = place_on(*fit.polynomial, t, point);
       distance = placed.signed_distance;

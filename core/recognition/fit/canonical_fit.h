@@ -19,6 +19,7 @@ struct FittedPoint {
   /// [1; 1/rad]
   double normal_residual = 0.0;
   double normal_weight = 0.0;
+  double polynomial_t = 0.0;  ///< parameter of CanonicalFit's polynomials
 };
 
 struct CanonicalFit {
@@ -29,6 +30,9 @@ struct CanonicalFit {
   /// line's position along itself) is fixed by convention and has variance 0.
   ShapePoseCovariance covariance;
   std::vector<FittedPoint> points;
+  /// A spline's polynomials, in the normalised frame: beside a cubical parabola, with the vertex
+  /// far away, shape and pose have lost digits that these have.
+  std::optional<PolynomialCoefficients> polynomial = std::nullopt;
 };
 
 /// Chi-square of its points.

@@ -86,8 +86,11 @@ void take_prior_modes(const ClassEvidence& path, const FitData& data, double lea
       of_arms.push_back({arm_of(touch, other, mode), best + std::log(others)});
     }
   }
-  for (const PriorStart& start :
-       prior_starts(touch, path.touch.curve_class, path.nodes[path.mode].curve)) {
+  const auto along = in_canonical_form(path.touch, path.nodes[path.mode].curve);
+  if (!along) {
+    return;
+  }
+  for (const PriorStart& start : prior_starts(touch, path.touch.curve_class, *along)) {
     if ((further && told_by_first && !(evidence->log_occam > least + kWorthMore)) ||
         !work.allows()) {
       break;
@@ -119,9 +122,7 @@ void take_prior_modes(const ClassEvidence& path, const FitData& data, double lea
 std::optional<TouchedCurve> placed(const Touch& touch, const CanonicalFit& fit, const FitData& data,
                                    WorkBudget& work) {
   work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
-  auto curve = curve_at(touch, fit, data);
-  const bool is_arc = !touch.as_arc || (curve && shape_at(touch.chart(), curve->z, touch.shape));
-  return is_arc ? curve : std::nullopt;
+  return curve_at(touch, fit, data);
 }
 
 /// Whether touched coordinates hold the fit. Those of a vertex far away lose digits. What is left
@@ -188,17 +189,49 @@ double least_log_ratio_of_arcs(const Touch& touch, const TouchedCurve& mode) {
   return least;
 }
 
+/// A spline's fit as an arc. nullopt if that does not hold it.
+std::optional<TouchedArc> placed_arc(const CanonicalFit& fit, double fitted_chi2, double weight,
+                                     const FitData& data, WorkBudget& work) {
+  auto arc = arc_of(fit, data);
+  if (!arc) {
+    return std::nullopt;
+  }
+  arc->touch.weight = weight;
+  work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+  auto curve = curve_at(arc->touch, arc->curve.z, arc->curve, data);
+  if (!curve || !holds(*curve, fitted_chi2, data)) {
+    return std::nullopt;
+  }
+  arc->curve = *std::move(curve);
+  return arc;
+}
+
+/// The evidence of a spline's fit as an arc alone: the other half of its prior, in which the vertex
+/// is farther away than double precision holds it, has none.
+std::optional<ClassEvidence> evidence_of_arc(const CanonicalFit& fit, const FitData& data,
+                                             double inflation, WorkBudget& work) {
+  auto arc = placed_arc(fit, chi2_of(fit) / inflation, 1.0 / std::sqrt(inflation), data, work);
+  if (!arc) {
+    return std::nullopt;
+  }
+  ClassEvidence evidence;
+  evidence.touch = arc->touch;
+  evidence.fitted_chi2 = arc->curve.chi2;
+  set_mode(descend(arc->touch, data, std::move(arc->curve), -1, work, kStepsFromFit), &evidence);
+  return is_of_optimum(evidence) ? std::optional(std::move(evidence)) : std::nullopt;
+}
+
 /// The half of the spline's prior that is one of arcs: the mode there of the same fit.
 /// False if arc coordinates do not hold it.
 bool add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* evidence,
              WorkBudget& work) {
-  Touch touch = evidence->touch;
-  touch.as_arc = true;
-  auto curve = placed(touch, fit, data, work);
-  if (!curve || !holds(*curve, evidence->fitted_chi2, data)) {
+  auto arc = placed_arc(fit, evidence->fitted_chi2, evidence->touch.weight, data, work);
+  if (!arc) {
     return false;
   }
-  curve = descend(touch, data, *std::move(curve), -1, work, kStepsFromFit);
+  const Touch& touch = arc->touch;
+  std::optional<TouchedCurve> curve =
+      descend(touch, data, std::move(arc->curve), -1, work, kStepsFromFit);
   const double from_vertex = log_mass(evidence->nodes[evidence->mode].curve);
   const double as_arc = log_mass(*curve);
   if (as_arc > from_vertex) {
@@ -221,13 +254,13 @@ bool is_of_optimum(const ClassEvidence& evidence) {
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work) {
   auto touch = touch_of(fit, data);
-  if (!touch) {
-    return std::nullopt;
+  std::optional<TouchedCurve> first;
+  if (touch) {
+    touch->weight = 1.0 / std::sqrt(inflation);
+    first = placed(*touch, fit, data, work);
   }
-  touch->weight = 1.0 / std::sqrt(inflation);
-  auto first = placed(*touch, fit, data, work);
   if (!first || !holds(*first, chi2_of(fit) / inflation, data)) {
-    return std::nullopt;
+    return evidence_of_arc(fit, data, inflation, work);
   }
   ClassEvidence evidence;
   evidence.touch = *touch;

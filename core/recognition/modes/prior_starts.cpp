@@ -151,6 +151,12 @@ std::optional<PriorStart> start_at(const Touch& touch, const Sided& shape,
   t = at->t;
   s = 0.0;
   std::for_each(std::make_reverse_iterator(ahead), feet.rend(), go_to);
+  if (touch.as_arc) {
+    const double speed = speed_at(*curve, at->t);
+    for (double& foot : start.curve.t) {
+      foot = speed * (foot - at->t);
+    }
+  }
   return finite ? std::optional(std::move(start)) : std::nullopt;
 }
 

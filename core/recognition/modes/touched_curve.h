@@ -31,9 +31,9 @@ struct Touch {
 /// A curve of the class near the touch, with the points' feet and the linear model about it.
 struct TouchedCurve {
   TouchedVector z = TouchedVector::Zero();
-  TouchedShape shape;
-  Pose2 frame_T_curve;    ///< normalised
-  std::vector<double> t;  ///< feet of the points
+  TouchedShape shape;     ///< not of an arc: z has it all
+  Pose2 frame_T_curve;    ///< normalised; of an arc: the touched place, x along the tangent there
+  std::vector<double> t;  ///< feet of the points; of an arc: their s (arc_coordinates.h)
   double chi2 = 0.0;
   double log_prior = 0.0;
   TouchedVector widths = TouchedVector::Zero();
@@ -54,6 +54,16 @@ Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, do
 /// The touch of a fit. `fit` must have a point for each of `data`, which are surface points.
 /// nullopt if double precision cannot hold the fit as a curve of its class.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
+
+/// A spline's fit as an arc: the touch, with the coordinates and feet alone.
+struct TouchedArc {
+  Touch touch;
+  TouchedCurve curve;
+};
+
+/// From the fit's polynomials, so that the vertex may be anywhere; nullopt if it has none.
+std::optional<TouchedArc> arc_of(const CanonicalFit& fit, const FitData& data);
+
 /// The same touch, with the direction of the neighbouring points: a curve that fits short arcs too
 /// well may cross them.
 Touch along_patch(Touch touch, const FitData& data);
@@ -65,5 +75,9 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit
 /// class.
 std::optional<TouchedCurve> curve_at(const Touch& touch, const TouchedVector& z,
                                      const TouchedCurve& from, const FitData& data);
+
+/// An arc with shape, frame and feet of the spline that it is; other curves as they are. nullopt
+/// where double precision cannot hold its vertex.
+std::optional<TouchedCurve> in_canonical_form(const Touch& touch, TouchedCurve curve);
 
 }  // namespace palpate

@@ -80,7 +80,7 @@ inline double near_foot(const Parabola& parabola, const Vec2& point, double /*t*
 /// The foot of `point` (curve's frame) by Newton's method: on a conic the one near the point, on a
 /// cubic the one near `t`, on the arm where it was. `sigma`: the point's noise. The curve at the
 /// end of the last step is told by Taylor's series: it is not asked again.
-template <PlaneCurve C>
+template <typename C>
 TrialFoot trial_foot(const C& curve, const Vec2& point, double t, double sigma) {
   t = near_foot(curve, point, t);
   constexpr int kMostFootSteps = 6;     // digits double from where it is sought

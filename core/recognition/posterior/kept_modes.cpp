@@ -25,9 +25,14 @@ std::vector<std::size_t> nearest_kept(const std::vector<Vec2>& kept_m, const Fit
   return nearest;
 }
 
-KeptMode kept(const ClassEvidence& evidence, const FitData& reduced) {
+/// nullopt where double precision does not hold the mode's vertex.
+std::optional<KeptMode> kept(const ClassEvidence& evidence, const FitData& reduced) {
   const CurveClass curve_class = evidence.touch.curve_class;
-  const TouchedCurve& mode = evidence.nodes[evidence.mode].curve;
+  const auto placed = in_canonical_form(evidence.touch, evidence.nodes[evidence.mode].curve);
+  if (!placed) {
+    return std::nullopt;
+  }
+  const TouchedCurve& mode = *placed;
   const double scale = reduced.scale;
   const auto in_metres = [&](double t) {
     return normalised_shape(curve_class, {mode.shape.values, t}, 1.0 / scale);
@@ -68,7 +73,9 @@ KeptModes kept_modes(const Evidences& evidences, const FitData& reduced) {
   for (const CurveClass curve_class : kCurveClasses) {
     const ClassEvidence* evidence = known_of(evidences, curve_class);
     if (evidence != nullptr && evidence->prior_mode_sought) {
-      result.modes.push_back(kept(*evidence, reduced));
+      if (auto mode = kept(*evidence, reduced)) {
+        result.modes.push_back(*std::move(mode));
+      }
     }
   }
   for (std::size_t i = 0; !result.modes.empty() && i < reduced.points.size(); ++i) {

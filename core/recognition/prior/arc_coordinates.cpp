@@ -20,30 +20,44 @@ ArcCoordinates arc_coordinates_of(const TouchedShape& spline) {
   return {second.dot(tangent), second.dot(normal), third.dot(tangent), third.dot(normal)};
 }
 
-// The third derivative has the direction of y; x has none of it, and its second derivative by t is
-// 2.
+namespace {
+
+/// The third derivative has the direction of y; x has none of it, and its second derivative by t is
+/// 2.
+struct Axes {
+  double third;  ///< its length
+  Vec2 y;
+  Vec2 x;
+  double x_second;
+
+  explicit Axes(const ArcCoordinates& z)
+      : third(z.tail<2>().norm()),
+        y(z.tail<2>() / third),
+        x(-left_of(y)),
+        x_second(Vec2(z.head<2>()).dot(x)) {}
+
+  bool is_spline() const { return third > 0.0 && x_second > 0.0; }
+};
+
+}  // namespace
+
+bool is_spline(const ArcCoordinates& z) { return Axes(z).is_spline(); }
+
 std::optional<TouchedShape> spline_at(const ArcCoordinates& z) {
-  const Vec2 second = z.head<2>();
-  const double third = z.tail<2>().norm();
-  if (!(third > 0.0)) {
-    return std::nullopt;  // a parabola
-  }
-  const Vec2 y = z.tail<2>() / third;
-  const Vec2 x = -left_of(y);
-  const double x_second = second.dot(x);
-  if (!(x_second > 0.0)) {
+  const Axes axes(z);
+  if (!axes.is_spline()) {
     return std::nullopt;
   }
-  const double rate = std::sqrt(2.0 / x_second);  // of s by t
+  const double rate = std::sqrt(2.0 / axes.x_second);  // of s by t
   TouchedShape spline;
-  spline.t = 0.5 * rate * x.x();
-  const double a = rate * rate * rate * third / 6.0;
-  const double b = 0.5 * rate * rate * second.dot(y) - 3.0 * a * spline.t;
-  const double c = rate * y.x() - (3.0 * a * spline.t + 2.0 * b) * spline.t;
+  spline.t = 0.5 * rate * axes.x.x();
+  const double a = rate * rate * rate * axes.third / 6.0;
+  const double b = 0.5 * rate * rate * Vec2(z.head<2>()).dot(axes.y) - 3.0 * a * spline.t;
+  const double c = rate * axes.y.x() - (3.0 * a * spline.t + 2.0 * b) * spline.t;
   spline.values << a, b, c;
-  // Near a cubical parabola x, y are small differences of large terms. Of the finest noise, a
-  // hundred millionth of the touched extent, a thousandth may be rounding.
-  constexpr double kMostTerms = 1e-11 / std::numeric_limits<double>::epsilon();
+  // Near a cubical parabola x, y are small differences of large terms. Rounding moves places by no
+  // more than a thousandth of the touched extent.
+  constexpr double kMostTerms = 1e-3 / std::numeric_limits<double>::epsilon();
   const double t = std::abs(spline.t);
   const double terms = ((a * t + std::abs(b) + 1.0) * t + std::abs(c)) * t;
   return terms < kMostTerms ? std::optional(spline) : std::nullopt;

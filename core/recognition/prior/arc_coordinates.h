@@ -16,10 +16,12 @@ using ArcCoordinates = Eigen::Vector4d;
 /// `spline`: a, b, c and the place.
 ArcCoordinates arc_coordinates_of(const TouchedShape& spline);
 
-/// The inverse. nullopt where the arc, travelled so, is no spline: parabolas and cubical parabolas
-/// are not, and on the far side of these the spline's t increases the other way. So near to one
-/// that double precision cannot tell them apart there is none either. Lengths in touched half
-/// extents.
+/// Whether the arc, travelled so, is a spline: parabolas and cubical parabolas are not, and on the
+/// far side of these the spline's t increases the other way.
+bool is_spline(const ArcCoordinates& z);
+
+/// The inverse. nullopt where the arc, travelled so, is no spline, or so near to a cubical parabola
+/// that double precision does not hold its vertex. Lengths in touched half extents.
 std::optional<TouchedShape> spline_at(const ArcCoordinates& z);
 
 /// The law of each coordinate, in touched half extents: core/README.md, "The prior".

@@ -11,6 +11,8 @@
 #include "core/curves/curve.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/given/given_class.h"
+#include "core/recognition/prior/touched_prior.h"
+#include "core/recognition/recognizer.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -20,7 +22,8 @@ namespace {
 struct NearCubical {
   std::vector<Vec2> touched_m;
   double sigma_m = 0.0;
-  double chi2_of_truth = 0.0;  ///< distances of the points from the true curve
+  double chi2_of_truth = 0.0;                 ///< distances of the points from the true curve
+  TouchedVector arc = TouchedVector::Zero();  ///< coordinates about its middle
 };
 
 /// `least_q`, `most_q`: of the quadratic term of x over the linear one, at the end of the arc.
@@ -35,6 +38,12 @@ NearCubical near_cubical(double least_q, double most_q, double sigma, int count,
              test::uniform(rng, -1.0, 1.0) * left_of(x);
   c.col(3) = test::random_sign(rng) * test::uniform(rng, 0.5, 1.5) * left_of(x);
   NearCubical scene;
+  const double speed = c.col(1).norm();
+  const Vec2 tangent = c.col(1) / speed;
+  const Vec2 second = 2.0 / (speed * speed) * c.col(2);
+  const Vec2 third = 6.0 / (speed * speed * speed) * c.col(3);
+  scene.arc.head<4>() << tangent.dot(second), cross(tangent, second), tangent.dot(third),
+      cross(tangent, third);
   scene.sigma_m = sigma;  // of a half extent of about 1
   std::normal_distribution<double> normal(0.0, sigma);
   for (int i = 0; i < count; ++i) {
@@ -92,6 +101,45 @@ TEST(NearCubicalSplines, AGivenOneIsOfLeastSquaresOrNotTold) {
   if (test::counts_tell()) {
     EXPECT_GE(10 * fitted, 9 * scenes);
   }
+}
+
+TEST(NearCubicalSplines, HaveWhatThePriorLeavesThem) {
+  const int scenes = test::stress_count(300);
+  constexpr int kCount = 200;
+  int recognized = 0;
+  int other = 0;
+  double least = 1.0;
+  for (int i = 0; i < scenes; ++i) {
+    std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
+    const double sigma = test::log_uniform(rng, 1e-5, 3e-3);
+    const NearCubical scene = near_cubical(1e-4, 0.1, sigma, kCount, rng);
+    std::vector<ContactSample> samples;
+    for (const Vec2& touched_m : scene.touched_m) {
+      samples.push_back({touched_m, sigma, 0});
+    }
+    Recognizer recognizer;
+    recognizer.add({0, 0}, samples);
+    const Recognition answer = recognizer.recognize();
+    double of_spline = 0.0;
+    for (const auto& hypothesis : answer.hypotheses) {
+      of_spline +=
+          hypothesis.shape.curve_class == CurveClass::CubicSpline ? hypothesis.probability : 0.0;
+    }
+    // Where the data leave the spline no more than its limit, that is cheaper by a coordinate: by
+    // its deviation, which is that of the mean of all points or more, over its prior's width, about
+    // 1. And an arc's density is what its tails leave there, a cubical parabola's at most all.
+    constexpr double kCoordinates = 100.0;  // what the two priors' differ by beside that
+    const double left = std::exp(log_prior({CurveClass::CubicSpline, true}, scene.arc));
+    EXPECT_GT(of_spline, sigma / std::sqrt(kCount) * left / kCoordinates) << i;
+    least = std::min(least, of_spline);
+    const bool certain = answer.status == RecognitionStatus::Recognized;
+    const CurveClass told = answer.shape.curve_class;
+    recognized += certain && told == CurveClass::CubicSpline ? 1 : 0;
+    other += certain && told != CurveClass::CubicSpline && told != CurveClass::CubicalParabola;
+  }
+  std::cout << "of " << scenes << ": RECOGNIZED as splines " << recognized
+            << ", as what they are not nearly " << other << ", P of a spline at least " << least
+            << '\n';
 }
 
 }  // namespace

@@ -192,6 +192,78 @@ TEST(ClassEvidence, OfASharpBendInTheMiddleOfAStrokeIsMostlyThatOfAnArc) {
   EXPECT_LT(of_cusp->log_all_modes, 0.1);
 }
 
+/// log of the mean of likelihood over likelihood at the fit, over the half of the spline's prior
+/// that is one of arcs, about its mode: by draws from a law of normal height and wider tails.
+/// Beyond a cubical parabola the arc is a spline travelled the other way.
+struct DrawnIntegral {
+  double log_occam = 0.0;
+  double deviation = 0.0;
+};
+
+DrawnIntegral log_occam_by_draws(const ClassEvidence& evidence, const FitData& data,
+                                 std::mt19937_64& rng) {
+  constexpr int kDraws = 4000;
+  constexpr double kWider = 1.2;  // of deviations
+  const TouchedCurve& mode = evidence.nodes[evidence.mode].curve;
+  TouchedCurve turned = mode;
+  for (double& s : turned.t) {
+    s = -s;
+  }
+  Touch back = evidence.touch;
+  back.tangent = -back.tangent;
+  const double log_determinant_of_root = mode.root.diagonal().array().log().sum();
+  std::normal_distribution<double> normal;
+  double sum = 0.0;
+  double squares = 0.0;
+  for (int i = 0; i < kDraws; ++i) {
+    TouchedVector u;
+    for (int k = 0; k < kMostCoordinates; ++k) {
+      u[k] = kWider * normal(rng);
+    }
+    const TouchedVector away = mode.root.transpose().triangularView<Eigen::Upper>().solve(u);
+    const TouchedVector z = mode.z + away.cwiseProduct(mode.widths);
+    TouchedVector z_back = z;
+    z_back.head<2>() *= -1.0;  // the second derivatives, in the other tangent's frame
+    z_back[4] *= -1.0;         // the offset
+    auto curve = curve_at(evidence.touch, z, mode, data);
+    if (!curve) {
+      curve = curve_at(back, z_back, turned, data);
+    }
+    if (!curve) {
+      continue;
+    }
+    const double log_of_law = -0.5 * u.squaredNorm() / (kWider * kWider) -
+                              kMostCoordinates * std::log(kWider) + log_determinant_of_root;
+    const double ratio = std::exp(-potential(*curve) + 0.5 * evidence.fitted_chi2 - log_of_law);
+    sum += ratio;
+    squares += ratio * ratio;
+  }
+  const double mean = sum / kDraws;
+  return {std::log(mean), std::sqrt(squares / kDraws - mean * mean) / std::sqrt(kDraws) / mean};
+}
+
+TEST(ClassEvidence, OfASplineBesideACubicalParabolaIsTheIntegralOverItsArcs) {
+  // Where the true curve is the limit, the splines that fit have their vertex at some hundreds of
+  // half extents to where no double holds it.
+  std::mt19937_64 rng = test::test_rng();
+  for (const double sigma : {1e-4, 1e-5, 1e-6}) {
+    for (int i = 0; i < 5; ++i) {
+      const Fitted fitted(scene_of(CurveClass::CubicalParabola, 0.5, sigma, 1, rng));
+      const auto canonical = fitted.canonical(CurveClass::CubicSpline);
+      ASSERT_TRUE(canonical.has_value()) << sigma;
+      const FitData& data = fitted.smooth.reduced;
+      const auto evidence = evidence_of(*canonical, data, 1.0, test::unbounded_work());
+      ASSERT_TRUE(evidence.has_value()) << sigma;
+      EXPECT_TRUE(evidence->touch.as_arc) << sigma;
+      const DrawnIntegral by_draws = log_occam_by_draws(*evidence, data, rng);
+      // A descent ends within a fiftieth of the mode (kSettledPotential), and a normal law leaves
+      // out what the arcs' residuals have of second order: as much again, with so little noise.
+      EXPECT_NEAR(evidence->log_occam, by_draws.log_occam, 0.05 + 4.0 * by_draws.deviation)
+          << sigma;
+    }
+  }
+}
+
 TEST(ClassEvidence, DoesNotChangeWithTheUnitOrThePlace) {
   std::mt19937_64 rng = test::test_rng();
   for (const CurveClass curve_class : kCurveClasses) {
