@@ -47,7 +47,8 @@ bool is_of_optimum(const ClassEvidence& evidence);
 /// The evidence by Laplace's formula, a normal law about the optimum. `fit` must be at its optimum
 /// on `data`, the reduced points as surface points, with one point for each. Noise variances are
 /// multiplied by `inflation`. nullopt if double precision cannot hold the fit in canonical
-/// coordinates, nor a spline's as an arc: a vertex so far away has no share in the prior. O(points).
+/// coordinates, nor a spline's as an arc: a vertex so far away has no share in the prior.
+/// O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work);
 

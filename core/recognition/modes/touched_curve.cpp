@@ -223,10 +223,12 @@ bool add_points(const Touch& touch, const FitData& data, const C& canonical, con
 template <PlaneCurve C>
 bool add_points_of(const Touch& touch, const FitData& data, const C& canonical,
                    const Moving& moving, TouchedCurve* curve) {
-  const auto& [motions, at, by_shape_at] = moving;
+  const Motions& motions = moving.motions;
+  const CurveDerivatives& at = moving.at;
   // By a coordinate of the shape, a place moves by its own part and, with the touched place, by
   // -shift - turn * lever.
-  const Eigen::Matrix<double, 2, 4> shift = by_shape_at * motions.shape + at.first * motions.t;
+  const Eigen::Matrix<double, 2, 4> shift =
+      moving.by_shape_at * motions.shape + at.first * motions.t;
   const Eigen::Matrix<double, C::parameter_count, 4> shape =
       motions.shape.template topRows<C::parameter_count>();
   const auto row_of = [&](const TrialFoot& foot, const Vec2& normal,
