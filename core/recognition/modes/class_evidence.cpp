@@ -12,6 +12,7 @@
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/modes/mode_search.h"
 #include "core/recognition/modes/prior_starts.h"
+#include "core/recognition/modes/touched_arc.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/touched_prior.h"
 
@@ -133,6 +134,16 @@ bool holds(const TouchedCurve& curve, double fitted_chi2, const FitData& data) {
   return std::abs(curve.chi2 - fitted_chi2) <= rounding;
 }
 
+/// As far as chi-square is told of a fit: to 1 by its end on the reduced points (contenders.cpp),
+/// and to as much again on the way from it to the mode.
+constexpr double kToldChi2 = 1.0;
+
+/// Whether they hold it so well that evidence can be told from there. Of a spline that they do not,
+/// an arc's are left.
+bool holds_closely(const TouchedCurve& spline, double fitted_chi2) {
+  return std::abs(spline.chi2 - fitted_chi2) <= kToldChi2;
+}
+
 /// Whether the data tell the sign of a spline's c, and not only its square.
 bool tells_bend(const TouchedCurve& spline) {
   constexpr int kBend = 3;  // the coordinate c
@@ -244,12 +255,7 @@ bool add_arc(const CanonicalFit& fit, const FitData& data, ClassEvidence* eviden
 
 }  // namespace
 
-bool is_of_optimum(const ClassEvidence& evidence) {
-  // As far as chi-square is told of a fit: to 1 by its end on the reduced points (contenders.cpp),
-  // and to as much again on the way from it to the mode.
-  constexpr double kLeft = 1.0;
-  return evidence.log_occam <= kLeft;
-}
+bool is_of_optimum(const ClassEvidence& evidence) { return evidence.log_occam <= kToldChi2; }
 
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work) {
@@ -259,8 +265,13 @@ std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData&
     touch->weight = 1.0 / std::sqrt(inflation);
     first = placed(*touch, fit, data, work);
   }
-  if (!first || !holds(*first, chi2_of(fit) / inflation, data)) {
-    return evidence_of_arc(fit, data, inflation, work);
+  const double fitted_chi2 = chi2_of(fit) / inflation;
+  const bool is_held = first && holds(*first, fitted_chi2, data);
+  if (!is_held || (fit.polynomial && !holds_closely(*first, fitted_chi2))) {
+    auto of_arc = evidence_of_arc(fit, data, inflation, work);
+    if (of_arc || !is_held) {
+      return of_arc;
+    }
   }
   ClassEvidence evidence;
   evidence.touch = *touch;

@@ -55,15 +55,6 @@ Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, do
 /// nullopt if double precision cannot hold the fit as a curve of its class.
 std::optional<Touch> touch_of(const CanonicalFit& fit, const FitData& data);
 
-/// A spline's fit as an arc: the touch, with the coordinates and feet alone.
-struct TouchedArc {
-  Touch touch;
-  TouchedCurve curve;
-};
-
-/// From the fit's polynomials, so that the vertex may be anywhere; nullopt if it has none.
-std::optional<TouchedArc> arc_of(const CanonicalFit& fit, const FitData& data);
-
 /// The same touch, with the direction of the neighbouring points: a curve that fits short arcs too
 /// well may cross them.
 Touch along_patch(Touch touch, const FitData& data);
