@@ -53,7 +53,7 @@ ShapePoseCovariance propagated_covariance(std::span<const TreePoint> points,
                                           const RecognitionTreeOptions& options) {
   const CurveClass curve_class = answer.shape.curve_class;
   const auto n = static_cast<Eigen::Index>(parameter_letters(curve_class).size()) + 3;
-  const ShapePoseCovariance unknown = untold_covariance(n);
+  ShapePoseCovariance unknown = untold_covariance(n);
   if (!answer.world_T_curve) {
     return unknown;
   }

@@ -10,22 +10,28 @@
 #include "core/local/spikes/jumps.h"
 #include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/turning_points.h"
+#include "core/recognition/samples/stroke_order.h"
 
 namespace palpate {
 namespace {
 
-/// A run of spikes is shorter.
-constexpr std::size_t kFewestOfPass = kLongestRunOfSpikes + 1;
+/// Samples of a pass, and of an arm of a cusp: fewer show no path of their own beside which spikes
+/// are seen.
+constexpr std::size_t kFewestOfPass = 6;
 
-/// An arm of a cusp has to show a path of its own, beside which spikes are seen.
-constexpr std::size_t kFewestOfArm = 6;
+/// Samples of a pass where the noise is stated: a run of spikes is shorter.
+constexpr std::size_t kFewestOfShortPass = kLongestRunOfSpikes + 1;
 
-/// The samples on the path of the stroke, by index: spikes turn it back too.
-std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
+std::vector<Vec2> positions_of(std::span<const StoredSample> samples) {
   std::vector<Vec2> positions;
   positions.reserve(samples.size());
   for (const StoredSample& sample : samples) positions.push_back(sample.position_m);
-  const std::vector<std::uint8_t> is_off = detours_of(positions);
+  return positions;
+}
+
+/// The samples on the path of the stroke, by index: spikes turn it back too.
+std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
+  const std::vector<std::uint8_t> is_off = detours_of(positions_of(samples));
   std::vector<std::size_t> kept;
   kept.reserve(samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -36,7 +42,7 @@ std::vector<std::size_t> on_path(std::span<const StoredSample> samples) {
 
 /// True if the stroke steps back anywhere, over a few samples: a quick test. Noise may do so too.
 bool steps_back(std::span<const StoredSample> samples) {
-  constexpr std::size_t kFew = kFewestOfPass / 2;
+  constexpr std::size_t kFew = kFewestOfShortPass / 2;
   for (std::size_t i = 2 * kFew; i < samples.size(); ++i) {
     const Vec2 before = samples[i - kFew].position_m - samples[i - 2 * kFew].position_m;
     const Vec2 after = samples[i].position_m - samples[i - kFew].position_m;
@@ -51,9 +57,11 @@ struct Lengths {
   /// Noise does not move a sample so far off its path, nor does the path bend so far away from the
   /// way between two samples.
   double beside_m = 0.0;
-  /// Noise does not put two samples so far apart. At least four median steps where it is not
-  /// stated, because where it is as large as a patch, its estimate means nothing; else one.
+  /// Noise does not put two samples so far apart. At least four median steps, because where the
+  /// noise is as large as a patch, its estimate means nothing.
   double far_m = 0.0;
+  /// Nor does it reach so far from a turn: one step where it is stated.
+  double clear_m = 0.0;
 };
 
 /// The median second difference of the path, which places where it turns back, and single spikes,
@@ -72,13 +80,11 @@ double second_difference_m(std::span<const Vec2> positions) {
 std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double default_sigma_m) {
   constexpr double kFarDeviations = 10.0;
   constexpr double kFarSteps = 4.0;  // if the samples are noise alone, seven standard deviations
-  std::vector<Vec2> positions;
+  const std::vector<Vec2> positions = positions_of(samples);
   std::vector<double> steps;
-  positions.reserve(samples.size());
   steps.reserve(samples.size());
-  for (const StoredSample& sample : samples) {
-    if (!positions.empty()) steps.push_back((sample.position_m - positions.back()).norm());
-    positions.push_back(sample.position_m);
+  for (std::size_t i = 1; i < positions.size(); ++i) {
+    steps.push_back((positions[i] - positions[i - 1]).norm());
   }
   const NoiseEstimate noise = estimate_noise(positions);
   // 0 where either is not known.
@@ -97,8 +103,8 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   const double noise_m = kFarDeviations * sigma_m;
   const double step_m = median_of(steps);
   const double bend_m = second_m / 4.0;  // a chord's height is an eighth of it: twice that
-  const double steps_m = (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m;
-  return Lengths{std::max(noise_m, bend_m), std::max(noise_m, steps_m)};
+  return Lengths{std::max(noise_m, bend_m), std::max(noise_m, kFarSteps * step_m),
+                 std::max(noise_m, (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m)};
 }
 
 /// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
@@ -139,7 +145,7 @@ Compared compared(std::span<const StoredSample> before, std::span<const StoredSa
     const double off = (place - turn).norm();
     const auto beside = distance_from(before, place);
     result.beyond += beside ? 0 : 1;
-    if (beside && off > lengths.far_m) {
+    if (beside && off > lengths.clear_m) {
       ++result.places;
       result.on += *beside <= std::max(lengths.beside_m, kBeside * off) ? 1 : 0;
     }
@@ -151,28 +157,22 @@ Compared compared(std::span<const StoredSample> before, std::span<const StoredSa
 /// lie within the noise of it, or within the play and drag of a probe. One compared place in four
 /// may be a spike. At least half of the places must be farther from the turn than noise reaches.
 bool leads_back(std::span<const StoredSample> before, std::span<const StoredSample> after,
-                const Lengths& lengths) {
+                const Lengths& lengths, std::size_t fewest) {
   Compared at = compared(before, after, lengths);
   // It goes on beyond where the other began: its first half, or that half's.
-  while (2 * at.places < kPlaces && at.beyond > 0 && after.size() >= 2 * kFewestOfPass) {
+  while (2 * at.places < kPlaces && at.beyond > 0 && after.size() >= 2 * fewest) {
     after = after.first(after.size() / 2);
     at = compared(before, after, lengths);
   }
   return 2 * at.places >= kPlaces && 4 * at.on >= 3 * at.places;
 }
 
-/// reversals_of, of samples without spikes.
-Reversals reversals_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
+/// Reversals by more than `far_m`, to passes of at least `fewest` samples.
+Reversals reversals_by(std::span<const StoredSample> samples, const Lengths& lengths, double far_m,
+                       std::size_t fewest) {
   Reversals turns;
-  if (samples.size() < 2 * kFewestOfPass) {
-    return turns;
-  }
-  const auto lengths = lengths_of(samples, default_sigma_m);
-  if (!lengths) {
-    return turns;
-  }
   const std::vector<std::size_t> reversals =
-      turning_points(0, samples.size(), lengths->far_m,
+      turning_points(0, samples.size(), far_m,
                      [&](std::size_t i) -> const Vec2& { return samples[i].position_m; });
   std::size_t begin = 0;   // of this pass
   std::size_t before = 0;  // the turn before this one, whatever it is
@@ -180,20 +180,20 @@ Reversals reversals_of_path(std::span<const StoredSample> samples, double defaul
     // The sample at the turn ends one pass; the next pass begins after it.
     const std::size_t turn = reversals[r] + 1;
     std::size_t next = r + 1;
-    const bool goes_on = next == reversals.size() || reversals[next] + 1 >= turn + kFewestOfPass;
-    while (next < reversals.size() && reversals[next] + 1 < turn + kFewestOfPass) {
+    const bool goes_on = next == reversals.size() || reversals[next] + 1 >= turn + fewest;
+    while (next < reversals.size() && reversals[next] + 1 < turn + fewest) {
       ++next;
     }
     const std::size_t end = next < reversals.size() ? reversals[next] + 1 : samples.size();
     // Compares the way back with at most four times as many samples: that bounds the time.
     const std::size_t from = turn - std::min(turn - begin, 4 * (end - turn));
-    const bool is_long = end - turn >= kFewestOfPass;
-    if (is_long && turn - begin >= kFewestOfPass &&
-        leads_back(samples.subspan(from, turn - from), samples.subspan(turn, end - turn),
-                   *lengths)) {
+    const bool is_long = end - turn >= fewest;
+    if (is_long && turn - begin >= fewest &&
+        leads_back(samples.subspan(from, turn - from), samples.subspan(turn, end - turn), lengths,
+                   fewest)) {
       turns.returns.push_back(turn);
       begin = turn;
-    } else if (end - turn >= kFewestOfArm && goes_on && turn - before >= kFewestOfArm) {
+    } else if (is_long && goes_on && turn - before >= fewest) {
       turns.cusps.push_back(turn);
     }
     before = turn;
@@ -201,10 +201,28 @@ Reversals reversals_of_path(std::span<const StoredSample> samples, double defaul
   return turns;
 }
 
+/// reversals_of, of samples without spikes.
+Reversals reversals_of_path(std::span<const StoredSample> samples, double default_sigma_m) {
+  const auto lengths = samples.size() >= 2 * kFewestOfShortPass
+                           ? lengths_of(samples, default_sigma_m)
+                           : std::nullopt;
+  if (!lengths) {
+    return {};
+  }
+  const Reversals turns = reversals_by(samples, *lengths, lengths->far_m, kFewestOfPass);
+  if (!(lengths->clear_m < lengths->far_m) || !show_order(positions_of(samples))) {
+    return turns;  // touches to and fro all over a part have no passes
+  }
+  // What few samples leave of a cusp is not told from spikes: passes alone.
+  Reversals short_passes{
+      reversals_by(samples, *lengths, lengths->clear_m, kFewestOfShortPass).returns, {}};
+  return short_passes.returns.size() > turns.returns.size() ? short_passes : turns;
+}
+
 }  // namespace
 
 Reversals reversals_of(std::span<const StoredSample> samples, double default_sigma_m) {
-  if (samples.size() < 2 * kFewestOfPass || !steps_back(samples)) {
+  if (samples.size() < 2 * kFewestOfShortPass || !steps_back(samples)) {
     return {};
   }
   const std::vector<std::size_t> kept = on_path(samples);
