@@ -19,7 +19,7 @@ namespace {
 /// are seen.
 constexpr std::size_t kFewestOfPass = 6;
 
-/// Samples of a pass where the noise is stated: a run of spikes is shorter.
+/// Samples of a pass of a coarse stroke: a run of spikes is shorter.
 constexpr std::size_t kFewestOfShortPass = kLongestRunOfSpikes + 1;
 
 std::vector<Vec2> positions_of(std::span<const StoredSample> samples) {
@@ -62,6 +62,8 @@ struct Lengths {
   double far_m = 0.0;
   /// Nor does it reach so far from a turn: one step where it is stated.
   double clear_m = 0.0;
+  /// The noise is stated, and does not reach from one sample to the next.
+  bool is_coarse = false;
 };
 
 /// The median second difference of the path, which places where it turns back, and single spikes,
@@ -104,7 +106,8 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   const double step_m = median_of(steps);
   const double bend_m = second_m / 4.0;  // a chord's height is an eighth of it: twice that
   return Lengths{std::max(noise_m, bend_m), std::max(noise_m, kFarSteps * step_m),
-                 std::max(noise_m, (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m)};
+                 std::max(noise_m, (stated_m > 0.0 ? 1.0 : kFarSteps) * step_m),
+                 stated_m > 0.0 && noise_m < step_m};
 }
 
 /// Distance from a place to the nearest step of a path through samples; nullopt if the nearest
@@ -210,7 +213,7 @@ Reversals reversals_of_path(std::span<const StoredSample> samples, double defaul
     return {};
   }
   const Reversals turns = reversals_by(samples, *lengths, lengths->far_m, kFewestOfPass);
-  if (!(lengths->clear_m < lengths->far_m) || !show_order(positions_of(samples))) {
+  if (!lengths->is_coarse || !show_order(positions_of(samples))) {
     return turns;  // touches to and fro all over a part have no passes
   }
   // What few samples leave of a cusp is not told from spikes: passes alone.

@@ -11,9 +11,9 @@ namespace palpate {
 
 /// Where a stroke turns back: indices of the samples after the turns, ascending.
 struct Reversals {
-  /// It leads back over the path that it came: a new pass, of at least 6 samples (4 where the noise
-  /// is stated), begins. A stroke that turns back beside its path (a cusp, the end of a needle)
-  /// begins none.
+  /// It leads back over the path that it came: a new pass, of at least 6 samples (4 where
+  /// stated noise does not reach from one to the next), begins. A stroke that turns back beside its
+  /// path (a cusp, the end of a needle) begins none.
   std::vector<std::size_t> returns;
   /// It turns back beside its path, for at least 6 samples. (A spike turns a stroke back twice.)
   std::vector<std::size_t> cusps;
