@@ -212,7 +212,7 @@ Reversals reversals_of_path(std::span<const StoredSample> samples, double defaul
   if (!lengths) {
     return {};
   }
-  const Reversals turns = reversals_by(samples, *lengths, lengths->far_m, kFewestOfPass);
+  Reversals turns = reversals_by(samples, *lengths, lengths->far_m, kFewestOfPass);
   if (!lengths->is_coarse || !show_order(positions_of(samples))) {
     return turns;  // touches to and fro all over a part have no passes
   }
