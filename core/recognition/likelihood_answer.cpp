@@ -21,8 +21,7 @@ Hypothesis to_hypothesis(const Weighing& w, CurveClass curve_class) {
     return hypothesis;
   }
   hypothesis.chi2 = w.fits[curve_class]->chi2;
-  hypothesis.dof =
-      static_cast<int>(w.residuals[curve_class]) - degrees_of_freedom(curve_class);
+  hypothesis.dof = static_cast<int>(w.residuals[curve_class]) - degrees_of_freedom(curve_class);
   hypothesis.at_limit = w.fits[curve_class]->at_limit;
   if (const auto& canonical = w.canonical[curve_class]) {
     hypothesis.shape = canonical->shape;

@@ -16,7 +16,8 @@ void add_notes_of_noise(const std::vector<ContactRow>& rows, const PointColumns&
   const auto unknown = static_cast<std::size_t>(
       std::ranges::count_if(rows, [](const ContactRow& r) { return r.sample.sigma_m == 0.0; }));
   if (columns.place(Column::Sigma) && unknown == rows.size()) {
-    notes.emplace_back("sigma is 0 or empty in every row: without --sigma, the noise counts as not stated");
+    notes.emplace_back(
+        "sigma is 0 or empty in every row: without --sigma, the noise counts as not stated");
   } else if (columns.place(Column::Sigma) && unknown > 0) {
     notes.push_back(
         "sigma is 0 or empty in " + std::to_string(unknown) + " of " + counted(rows.size(), "row") +

@@ -46,8 +46,8 @@ double log_density_of(const Weighed& reading, const ExplainingCurve& curve,
   return log_density + log_density_of(spikes, curve, 2.0 * w.data.scale);
 }
 
-/// Whether a fit lies outside of the 95 % ellipsoid of another one of its class, whose covariance is
-/// `inflation` times what its fit has. (One sample more or less seldom leads so far, unless the
+/// Whether a fit lies outside of the 95 % ellipsoid of another one of its class, whose covariance
+/// is `inflation` times what its fit has. (One sample more or less seldom leads so far, unless the
 /// shape rests on it.)
 bool is_another(const CanonicalFit& fit, const CanonicalFit& told, double inflation) {
   constexpr double kBeyond = 0.05;
@@ -89,7 +89,8 @@ Weighed with_share_of(Weighed rest, double share, Weighed told) {
     probability /= sum;
   }
   w.probabilities = by_both;
-  if (rest.w.best == w.best && is_another(*rest.w.canonical[w.best], *w.canonical[w.best], w.inflation)) {
+  if (rest.w.best == w.best &&
+      is_another(*rest.w.canonical[w.best], *w.canonical[w.best], w.inflation)) {
     w.rival_share = std::max(w.rival_share, share);
   }
   return told;

@@ -177,7 +177,8 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
       left.inverse_normal_sigma = 0.0;
     }
   }
-  w.counted_chi2 = counted_in_full(placed->fit.chi2, squares_of_normals(placed->canonical, full), w);
+  w.counted_chi2 =
+      counted_in_full(placed->fit.chi2, squares_of_normals(placed->canonical, full), w);
   w.fits[w.best] = std::move(placed->fit);
   w.canonical[w.best] = std::move(placed->canonical);
   return w;

@@ -15,7 +15,7 @@
 namespace palpate {
 namespace {
 
-constexpr int kScenes = 2400;
+constexpr int kScenes = 4800;
 constexpr double kCoverage = 0.999;
 
 /// Calibration of the most probable hypothesis, over all answers and by the class that it names.
