@@ -2,7 +2,6 @@
 // machine and under any load.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -45,12 +44,6 @@ class WorkBudget {
   void spend(WorkKind kind, std::size_t count) {
     counts_[static_cast<std::size_t>(kind)] += count;
     spent_ += price_of(kind) * static_cast<double>(count);
-  }
-
-  /// Allows as much as `other` from now on, if that is more.
-  void extend_to(const WorkBudget& other) {
-    most_ = std::max(most_, other.most_);
-    ceiling_ = std::max(ceiling_, other.ceiling_);
   }
 
   /// Whether there is work left for what can be left out.

@@ -100,7 +100,6 @@ class Recognizer::Impl {
   /// The method, from stored samples to the answer: core/README.md, "The method on one page".
   Recognition look(WorkBudget& work) {
     const std::vector<StoredPatch>& clean = cleaned(work);
-    work.extend_to(work_limit(clean));  // passes of one stroke are as many patches
     Touched touched{make_fit_data(clean, options_.sigma_m), clean};
     if (!can_answer(touched.data, memory_.patches().size())) {
       return collecting(touched.data);

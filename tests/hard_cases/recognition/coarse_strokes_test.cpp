@@ -142,16 +142,5 @@ TEST(CoarseStrokes, BackAndForthAreOfTheSameClass) {
   });
 }
 
-// The work that an answer may take grows with the passes, as it does with strokes.
-TEST(CoarseStrokes, ManyPassesAreNoMoreWorkThanMayBe) {
-  std::mt19937_64 rng = test::test_rng();
-  const auto parabola = [](double t) { return Vec2(t * t, 2.0 * t); };
-  for (int i = 0; i < 20; ++i) {
-    const Recognition answer =
-        answer_to({back_and_forth(parabola, -1.2, uniform(rng, 1.0, 1.2), 10, 25)}, 2e-3, rng);
-    EXPECT_NE(answer.doubt, Doubt::WorkLimit) << i;
-  }
-}
-
 }  // namespace
 }  // namespace palpate
