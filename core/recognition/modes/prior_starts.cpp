@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/curves/curve.h"
+#include "core/recognition/modes/touched_arc.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/prior_lattice.h"
 
@@ -152,10 +153,7 @@ std::optional<PriorStart> start_at(const Touch& touch, const Sided& shape,
   s = 0.0;
   std::for_each(std::make_reverse_iterator(ahead), feet.rend(), go_to);
   if (touch.as_arc) {
-    const double speed = speed_at(*curve, at->t);
-    for (double& foot : start.curve.t) {
-      foot = speed * (foot - at->t);
-    }
+    to_arc_feet(*curve, at->t, &start.curve.t);
   }
   return finite ? std::optional(std::move(start)) : std::nullopt;
 }

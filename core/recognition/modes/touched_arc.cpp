@@ -44,6 +44,13 @@ Eigen::Matrix<double, 2, 4> arc_motions_by_s(double s) {
 
 }  // namespace
 
+void to_arc_feet(const Curve& spline, double touched_t, std::vector<double>* feet) {
+  const double speed = derivatives(spline, touched_t).first.norm();
+  for (double& t : *feet) {
+    t = speed * (t - touched_t);
+  }
+}
+
 bool place_arc_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   if (!is_spline(curve->z.head<4>())) {
     return false;

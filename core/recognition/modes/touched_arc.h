@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/recognition/modes/touched_curve.h"
 
@@ -16,6 +17,9 @@ struct TouchedArc {
 
 /// From the fit's polynomials, so that the vertex may be anywhere; nullopt if it has none.
 std::optional<TouchedArc> arc_of(const CanonicalFit& fit, const FitData& data);
+
+/// Feet by a spline's t as those of the arc about the touched place: by s.
+void to_arc_feet(const Curve& spline, double touched_t, std::vector<double>* feet);
 
 /// Feet, chi-square and derivatives of an arc, whose z and starting feet are set. false outside the
 /// class, and if a foot has run away.

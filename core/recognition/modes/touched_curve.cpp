@@ -151,12 +151,6 @@ bool place_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   return std::isfinite(curve->chi2) && curve->root.allFinite();
 }
 
-/// Speed by t at the touched place of a spline.
-double speed_at_touch(const TouchedShape& spline) {
-  const auto curve = make_curve(CurveClass::CubicSpline, spline.values);
-  return curve ? derivatives(*curve, spline.t).first.norm() : 0.0;
-}
-
 }  // namespace
 
 Pose2 pose_of(const Touch& touch, const TouchedVector& z, const Curve& curve, double t) {
@@ -218,10 +212,11 @@ std::optional<TouchedCurve> curve_at(const Touch& touch, const CanonicalFit& fit
   if (!touch.as_arc) {
     return place_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
   }
-  const double speed = speed_at_touch(touch.shape);
-  for (double& t : curve.t) {
-    t = speed * (t - touch.shape.t);
+  const auto spline = make_curve(touch.curve_class, touch.shape.values);
+  if (!spline) {
+    return std::nullopt;
   }
+  to_arc_feet(*spline, touch.shape.t, &curve.t);
   return place_arc_on(touch, data, &curve) ? std::optional(std::move(curve)) : std::nullopt;
 }
 
@@ -252,7 +247,7 @@ std::optional<TouchedCurve> in_canonical_form(const Touch& touch, TouchedCurve c
   }
   curve.shape = *shape;
   curve.frame_T_curve = pose_of(touch, curve.z, *canonical, shape->t);
-  const double speed = speed_at_touch(*shape);
+  const double speed = derivatives(*canonical, shape->t).first.norm();
   for (double& t : curve.t) {
     t = shape->t + t / speed;
   }

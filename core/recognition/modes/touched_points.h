@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// Those of a fit.
+/// The weights of measured normals, as the fit has them.
 inline void set_normal_weights(const CanonicalFit& fit, const FitData& data, Touch* touch) {
   if (residual_count(data) > data.points.size()) {
     for (const FittedPoint& point : fit.points) {

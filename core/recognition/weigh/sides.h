@@ -17,7 +17,7 @@ struct SidedFits {
   std::vector<SideChoice> choices;
   std::size_t taken = 0;  ///< index of the most probable one
   /// log odds over the next best choice of sides, by what was measured and stated alone; below 0 if
-  /// another choice fits better, infinite if all sides are known.
+  /// another choice fits better, 0 if no choice has evidence, infinite if all sides are known.
   double margin = std::numeric_limits<double>::infinity();
   /// The samples ask for sides against which all measured normals together speak beyond doubt.
   bool against_normals() const { return 2.0 * choice().log_of_normals < -kNegligibleLogOdds; }
