@@ -1,6 +1,6 @@
 #include "core/recognition/posterior/kept_modes.h"
 
-#include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -10,19 +10,31 @@
 namespace palpate {
 namespace {
 
-/// For each point of `reduced`, the kept one that lies nearest.
+std::size_t nearest(const std::vector<Vec2>& points_m, const Vec2& place_m) {
+  std::size_t best = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < points_m.size(); ++i) {
+    const double squared = (points_m[i] - place_m).squaredNorm();
+    if (squared < least) {
+      least = squared;
+      best = i;
+    }
+  }
+  return best;
+}
+
+/// For each point of `reduced`, the kept one that lies nearest. Strokes that have not grown leave
+/// their points as they were, one after the other: only the others are compared with all.
 std::vector<std::size_t> nearest_kept(const std::vector<Vec2>& kept_m, const FitData& reduced) {
-  std::vector<std::size_t> nearest;
-  nearest.reserve(reduced.points.size());
+  std::vector<std::size_t> numbers;
+  numbers.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
     const Vec2 place_m = world_m(reduced, point);
-    const auto closer = [&](const Vec2& a, const Vec2& b) {
-      return (a - place_m).squaredNorm() < (b - place_m).squaredNorm();
-    };
-    nearest.push_back(static_cast<std::size_t>(
-        std::min_element(kept_m.begin(), kept_m.end(), closer) - kept_m.begin()));
+    const std::size_t next = numbers.empty() ? 0 : numbers.back() + 1;
+    const bool is_next = next < kept_m.size() && kept_m[next] == place_m;
+    numbers.push_back(is_next ? next : nearest(kept_m, place_m));
   }
-  return nearest;
+  return numbers;
 }
 
 /// nullopt where double precision does not hold the mode's vertex.
