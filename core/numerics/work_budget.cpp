@@ -9,29 +9,29 @@ double price_of(WorkKind kind) {
     case WorkKind::PolynomialRow:
       return 1.0;
     case WorkKind::ConicRow:
-      return 2.0;
+      return 4.5;
     case WorkKind::SoughtFoot:
-      return 9.0;
+      return 20.0;
     case WorkKind::FitStep:
       return 4.0;
     case WorkKind::AxisRow:
-      return 0.32;
+      return 0.2;
     case WorkKind::SeedRow:
-      return 0.24;
+      return 0.3;
     case WorkKind::PlacedRow:
-      return 2.6;
+      return 0.6;
     case WorkKind::PathRow:
       return 2.2;
     case WorkKind::PosteriorRow:
-      return 2.0;
+      return 2.4;
     case WorkKind::DriftRow:
-      return 1.1;
+      return 0.7;
     case WorkKind::OffsetCell:
-      return 9.0;
+      return 6.0;
     case WorkKind::SpikeRow:
-      return 0.4;
+      return 0.6;
     case WorkKind::Sample:
-      return 0.9;
+      return 1.1;
   }
   return 1.0;
 }

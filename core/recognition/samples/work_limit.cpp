@@ -21,13 +21,13 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   const auto n = static_cast<double>(samples);
   const auto p = static_cast<double>(patches);
   // Every sample is read, smoothed, and stands in the best class's last steps.
-  constexpr double kOfSample = 10.0;
+  constexpr double kOfSample = 14.0;
   // The search goes through the points that stand for samples: through all samples where these are
   // few; a dozen of a patch; 64 of many patches, which are then followed on all.
-  const double by_samples = 400.0 * n + 2100.0 * p - 1100.0;
-  const double of_few_patches = 6500.0 + 5300.0 * p;
-  const double of_some_patches = 7200.0 + 3050.0 * p;
-  const double of_many_patches = 43000.0 + 320.0 * p;
+  const double by_samples = 440.0 * n + 2280.0 * p - 1000.0;
+  const double of_few_patches = 9500.0 + 3850.0 * p;
+  const double of_some_patches = 15000.0 + 2400.0 * p;
+  const double of_many_patches = 46000.0 + 465.0 * p;
   return kOfSample * n + std::min({by_samples, of_few_patches, of_some_patches, of_many_patches});
 }
 
