@@ -19,6 +19,8 @@
 namespace palpate {
 namespace {
 
+constexpr double kNoMass = -std::numeric_limits<double>::infinity();
+
 /// log: less than a fiftieth of the best is not told.
 constexpr double kTold = 4.0;
 
@@ -349,6 +351,45 @@ ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_
     spline.touch = touch;
     set_mode(*std::move(mode), &spline);
     set_log_all_modes(std::log1p(std::exp(-gain)), &spline);
+  }
+  return spline;
+}
+
+ClassEvidence with_mode_at_parabola(ClassEvidence spline, const ClassEvidence& parabola,
+                                    const FitData& data, WorkBudget& work) {
+  const TouchedCurve& from = parabola.nodes[parabola.mode].curve;
+  std::optional<TouchedArc> best;
+  double mass = kNoMass;
+  for (const bool with : {true, false}) {
+    auto arc = arc_of_parabola(parabola.touch, from, with);
+    work.spend(WorkKind::PosteriorRow, rows_of_curve(data));
+    auto curve = arc ? curve_at(arc->touch, arc->curve.z, arc->curve, data) : std::nullopt;
+    if (!curve) {
+      continue;
+    }
+    curve = descend(arc->touch, data, *std::move(curve), -1, work, kStepsFromFit);
+    if (log_mass(*curve) > mass) {
+      mass = log_mass(*curve);
+      arc->curve = *std::move(curve);
+      best = std::move(arc);
+    }
+    if (best && best->curve.left_to_gain > 0.0) {
+      break;  // settled: the other way round it lies beyond the parabola
+    }
+  }
+  if (!best) {
+    return spline;
+  }
+  // What it has besides may be the arc's already.
+  const double before = log_mass(spline.nodes[spline.mode].curve);
+  const double others = std::expm1(spline.log_all_modes);
+  if (mass > before) {
+    const double own = spline.touch.as_arc ? 0.0 : std::exp(before - mass);
+    spline.touch = best->touch;
+    set_mode(std::move(best->curve), &spline);
+    set_log_all_modes(std::log1p(own + others * std::exp(before - mass)), &spline);
+  } else if (!spline.touch.as_arc) {
+    set_log_all_modes(std::log1p(std::max(others, std::exp(mass - before))), &spline);
   }
   return spline;
 }

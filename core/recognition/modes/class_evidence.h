@@ -72,6 +72,11 @@ std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_ch
 ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
                                 const FitData& data, WorkBudget& work);
 
+/// The same at the mode that it has beside the parabola: an arc with next to no third derivative.
+/// The best fit, and what the prior leads to from there, may lie far along a flat valley.
+ClassEvidence with_mode_at_parabola(ClassEvidence spline, const ClassEvidence& parabola,
+                                    const FitData& data, WorkBudget& work);
+
 /// The evidence at the mode that `start`, which need not be an optimum, leads to. `fitted_chi2`:
 /// the chi-square that `log_occam` counts from. nullopt as for evidence_of().
 std::optional<ClassEvidence> at_mode(const CanonicalFit& start, bool as_arc, double fitted_chi2,

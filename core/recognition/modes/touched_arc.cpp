@@ -51,6 +51,34 @@ void to_arc_feet(const Curve& spline, double touched_t, std::vector<double>* fee
   }
 }
 
+std::optional<TouchedArc> arc_of_parabola(const Touch& touch, const TouchedCurve& parabola,
+                                          bool with_its_t) {
+  constexpr double kLeastThird = 1e-9;  // far below any noise
+  const auto curve = make_curve(CurveClass::Parabola, parabola.shape.values);
+  if (!curve) {
+    return std::nullopt;
+  }
+  const double way = with_its_t ? 1.0 : -1.0;
+  const CurveDerivatives at = derivatives(*curve, parabola.shape.t);
+  const double speed = at.first.norm();
+  const Vec2 tangent = way / speed * at.first;
+  const Vec2 second =
+      Vec2(at.second.dot(tangent), at.second.dot(left_of(tangent))) / (speed * speed);
+  TouchedArc arc;
+  arc.touch = touch;
+  arc.touch.curve_class = CurveClass::CubicSpline;
+  arc.touch.as_arc = true;
+  arc.touch.tangent *= way;
+  const int own = shape_coordinates(CurveClass::Parabola);
+  arc.curve.z << second, kLeastThird * left_of(second).normalized(), way * parabola.z[own],
+      parabola.z[own + 1];
+  arc.curve.t.reserve(parabola.t.size());
+  for (const double t : parabola.t) {
+    arc.curve.t.push_back(way * speed * (t - parabola.shape.t));
+  }
+  return arc;
+}
+
 bool place_arc_on(const Touch& touch, const FitData& data, TouchedCurve* curve) {
   if (!is_spline(curve->z.head<4>())) {
     return false;

@@ -18,6 +18,12 @@ struct TouchedArc {
 /// From the fit's polynomials, so that the vertex may be anywhere; nullopt if it has none.
 std::optional<TouchedArc> arc_of(const CanonicalFit& fit, const FitData& data);
 
+/// A parabola as a spline with next to no third derivative, travelled with its t or
+/// against it: splines to one side of it are arcs one way round, to the other side the other.
+/// nullopt where it is no curve.
+std::optional<TouchedArc> arc_of_parabola(const Touch& touch, const TouchedCurve& parabola,
+                                          bool with_its_t);
+
 /// Feet by a spline's t as those of the arc about the touched place: by s.
 void to_arc_feet(const Curve& spline, double touched_t, std::vector<double>* feet);
 

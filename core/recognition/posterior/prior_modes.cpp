@@ -76,6 +76,26 @@ void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likel
   }
 }
 
+/// The same beside the parabola, that it is there but for a third derivative.
+void add_mode_at_parabola(const ClassFits& fits, const FitData& reduced,
+                          const Likelihood& likelihood, double best, Evidences* evidences,
+                          WorkBudget& work) {
+  constexpr double kMissing = 2.0;  // log odds: what the third derivative may cost beside none
+  constexpr auto kParabola = CurveClass::Parabola;
+  constexpr auto kSpline = CurveClass::CubicSpline;
+  auto& spline = evidences->classes[kSpline];
+  const auto& parabola = evidences->classes[kParabola];
+  if (!spline || !parabola || !fits[kSpline] || !fits[kParabola] || !work.allows()) {
+    return;
+  }
+  const double of_parabola = log_evidence(likelihood, *evidences, *fits[kParabola]);
+  const double of_spline = log_evidence(likelihood, *evidences, *fits[kSpline]);
+  if (of_parabola > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
+    spline = with_mode_at_parabola(*std::move(spline), *parabola,
+                                   points_of(*fits[kSpline], reduced), work);
+  }
+}
+
 }  // namespace
 
 void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
@@ -106,6 +126,7 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
     add_prior_mode(best, fits, reduced, likelihood, highest, evidences, work);
   }
   add_mode_at_cusp(fits, reduced, likelihood, highest, evidences, work);
+  add_mode_at_parabola(fits, reduced, likelihood, highest, evidences, work);
 }
 
 }  // namespace palpate
