@@ -45,7 +45,9 @@ Weighed CountedSamples::without_outliers(const Touched& touched, std::span<const
   const std::span<const StoredPatch> patches = touched.patches;
   Weighed weighed;
   weighed.w.starts.assign(starts.begin(), starts.end());
-  if (std::vector<bool> off = samples_at(off_m, patches); !off.empty()) {
+  // (Of touches that lie apart, what parts near a class have on all of them must be known.)
+  const auto likely_off = all_lie_apart(data) ? std::span<const Vec2>{} : off_m;
+  if (std::vector<bool> off = samples_at(likely_off, patches); !off.empty()) {
     weigh_again(std::move(off), touched, StartsOf::LastWeighing, &weighed, work);
   }
   const auto curve = weighed.outliers.empty() ? std::nullopt : curve_of(weighed.w);
@@ -215,6 +217,7 @@ void CountedSamples::weigh_again(std::vector<bool> aside, const Touched& touched
       of == StartsOf::Search ? std::vector<SidedStart>{} : weighed->w.starts;
   WeighOptions options = weigh_options(kept);
   options.log_odds_against_gross = log_odds_against_gross(touched.data, kept);
+  options.log_near_with_gross = weighed->w.log_near_over_paths;
   Weighing again = weigh_in_full(kept, touched.patches, work, options, starts);
   if (!work.was_cut()) {  // else the one before says more
     weighed->w = std::move(again);

@@ -15,11 +15,16 @@ Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likeli
   return evidences;
 }
 
+double log_evidence_of_paths(const Likelihood& likelihood, const Evidences& evidences,
+                             double smooth_chi2) {
+  const FreeForm& paths = evidences.free_form;
+  return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
+                                 paths.determined);
+}
+
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,
                                     double smooth_chi2) {
-  const FreeForm& paths = evidences.free_form;
-  const double log_paths = likelihood.log_evidence(
-      smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam, paths.determined);
+  const double log_paths = log_evidence_of_paths(likelihood, evidences, smooth_chi2);
   return log_add(log_add(log_paths, evidences.log_near), evidences.log_edges);
 }
 

@@ -41,6 +41,8 @@ struct Evidences {
   /// log of the evidence of parts near a class, times what these are as probable beforehand as free
   /// paths (weigh/near_parts.h).
   double log_near = kNoEvidence;
+  /// The same over the evidence of free paths, where all touches lie apart.
+  double log_near_over_paths = kNoEvidence;
   /// log of the evidence of two edges with a fillet, as probable beforehand as free paths
   /// (weigh/edges_of_part.h).
   double log_edges = kNoEvidence;
@@ -65,6 +67,10 @@ struct Evidences {
 /// The evidence of free-form paths alone, of no class yet.
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work);
+
+/// log of the evidence of free-form paths.
+double log_evidence_of_paths(const Likelihood& likelihood, const Evidences& evidences,
+                             double smooth_chi2);
 
 /// log of the evidence of "unclassified": free-form paths, parts near a class, and edges.
 double log_evidence_of_unclassified(const Likelihood& likelihood, const Evidences& evidences,

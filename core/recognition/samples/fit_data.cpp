@@ -172,6 +172,11 @@ double rms_sigma(const FitData& data) {
   return std::sqrt(sum / static_cast<double>(data.points.size()));
 }
 
+bool all_lie_apart(const FitData& data) {
+  return std::all_of(data.patches.begin(), data.patches.end(),
+                     [](const PatchSpan& patch) { return patch.size() <= 1; });
+}
+
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m) {
   double of_contacts = 0.0;
   double of_means = 0.0;

@@ -92,6 +92,10 @@ inline Vec2 world_m(const FitData& data, const FitPoint& point) {
 /// stated.
 FitData make_fit_data(std::span<const StoredPatch> patches, double default_sigma_m);
 
+/// Whether no two of the points are neighbours along a stroke. (A touch that was set aside has left
+/// an empty patch.)
+bool all_lie_apart(const FitData& data);
+
 /// Ratio of the noise of a contact to that of a stored sample (a mean of several in long patches);
 /// 1 if none are merged.
 double noise_over_means(std::span<const StoredPatch> patches, double default_sigma_m);

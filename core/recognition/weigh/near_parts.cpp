@@ -8,6 +8,7 @@
 
 #include "core/numerics/probability/log_add.h"
 #include "core/numerics/probability/negligible.h"
+#include "core/recognition/coherent/near_class.h"
 #include "core/recognition/weigh/near_best.h"
 
 namespace palpate {
@@ -26,12 +27,6 @@ constexpr std::array kScatter = {0.25, 0.125, 0.0625, 0.03125, 0.015625, 0.00781
 /// sigma (Likelihood::log_evidence). So much of it lies between a noise that no probe reaches, a
 /// millionth of the half extent, and kLargestNoise.
 const double kLogOfNoises = std::log(2.0 * std::log(kLargestNoise / 1e-6));
-
-/// (A touch that was set aside has left an empty patch.)
-bool all_lie_apart(const FitData& data) {
-  return std::all_of(data.patches.begin(), data.patches.end(),
-                     [](const PatchSpan& patch) { return patch.size() <= 1; });
-}
 
 /// The same points with `factor` times their noise. What normals are off by where a place is not
 /// known follows (fit/orthogonal/measured_normal.h).
@@ -54,8 +49,10 @@ double log_deviations(const CanonicalFit& placed, const FitData& data) {
   return sum;
 }
 
-/// log of the evidence of the parts near the curve of one class. `least`: less is not computed.
-double log_evidence_near(const ClassFit& coarse, double least, const EvidenceContext& context) {
+/// log of the evidence of the parts near the curve of one class from which they deviate at each
+/// touch for itself. `least`: less is not computed.
+double log_evidence_scattered_near(const ClassFit& coarse, double least,
+                                   const EvidenceContext& context) {
   const FitData& reduced = points_of(coarse, context.reduced);
   std::optional<double> at_noise;
   const double n = static_cast<double>(reduced.points.size());
@@ -89,23 +86,47 @@ double log_evidence_near(const ClassFit& coarse, double least, const EvidenceCon
   return sum;
 }
 
-/// log of the evidence of touches' parts near any class. `least`: less is not computed.
+/// The same of parts whose deviation from the class is smooth: the more touches there are, the
+/// better they tell it from one that is another at each. Only where the noise is stated: what the
+/// class leaves would tell another one.
+double log_evidence_smoothly_near(const ClassFit& coarse, double least,
+                                  const EvidenceContext& context) {
+  const FitData& reduced = points_of(coarse, context.reduced);
+  const auto placed = context.likelihood.sigma_known && context.work.allows()
+                          ? to_canonical(coarse, reduced)
+                          : std::nullopt;
+  const double inflation = context.likelihood.inflation();
+  const auto evidence =
+      placed ? evidence_of(*placed, reduced, inflation, context.work) : std::nullopt;
+  if (!evidence) {
+    return kNoEvidence;
+  }
+  const double of_class = kLogOfTouches - 0.5 * chi2_of(*placed) / inflation + evidence->log_occam;
+  const auto gain =
+      log_gain_near_class(*placed, *evidence, reduced, context.likelihood, context.arcs.sigma, 0.0,
+                          0.0, least - of_class, context.work);
+  return gain ? of_class + *gain : kNoEvidence;
+}
+
+/// log of the evidence of touches' parts near any class. `least`: less is not computed. Deviations
+/// that are smooth and others are alike probable.
 double log_evidence_of_touches(const ClassFits& coarse, double least,
                                const EvidenceContext& context) {
   double sum = kNoEvidence;
   for (const auto& fit : coarse) {
     if (fit && !fit->at_limit && std::isfinite(fit->chi2)) {
-      sum = log_add(sum, log_evidence_near(*fit, least, context));
+      sum = log_add(sum, log_evidence_scattered_near(*fit, least, context));
+      sum = log_add(sum, log_evidence_smoothly_near(*fit, least, context));
     }
   }
-  return sum;
+  return sum - std::log(2.0);
 }
 
 }  // namespace
 
 Contenders with_near_parts(Contenders contenders, const EvidenceContext& context, bool of_strokes,
-                           double margin) {
-  contenders.evidences.log_near = kNoEvidence;
+                           double log_with_gross, double margin) {
+  contenders.evidences.log_near = contenders.evidences.log_near_over_paths = kNoEvidence;
   const CurveClass best = best_class(contenders.fits, context.likelihood, contenders.evidences);
   if (!contenders.fits[best]) {
     return contenders;
@@ -115,7 +136,12 @@ Contenders with_near_parts(Contenders contenders, const EvidenceContext& context
   // Less than a hundredth of what keeps the best from being RECOGNIZED is not asked for.
   const double least = of_class - margin - std::log(100.0);
   if (all_lie_apart(context.arcs.data)) {
-    contenders.evidences.log_near = log_evidence_of_touches(contenders.coarse, least, context);
+    const double log_paths =
+        log_evidence_of_paths(context.likelihood, contenders.evidences, context.arcs.smooth.chi2);
+    const double log_near = log_add(log_evidence_of_touches(contenders.coarse, least, context),
+                                    log_paths + log_with_gross);
+    contenders.evidences.log_near = log_near;
+    contenders.evidences.log_near_over_paths = log_near - log_paths;
   } else if (of_strokes) {
     contenders.evidences.log_near = log_evidence_near_best(best, 0.0, least, contenders, context);
   }

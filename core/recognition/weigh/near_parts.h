@@ -10,9 +10,9 @@ namespace palpate {
 /// strokes to follow, take them for random places, and only a class could then explain that they
 /// lie on anything smooth. Of strokes, smooth deviations from the best class: a free path pays for
 /// every bend anew, and so has next to nothing about a part that is of a class but for a little.
-/// `of_strokes`: as WeighOptions::near_parts. Nothing if no such part can matter. `margin`: log
-/// odds below which the best class is not RECOGNIZED.
+/// `of_strokes`, `log_with_gross`: as WeighOptions::near_parts and log_near_with_gross. Nothing if
+/// no such part can matter. `margin`: log odds below which the best class is not RECOGNIZED.
 Contenders with_near_parts(Contenders contenders, const EvidenceContext& context, bool of_strokes,
-                           double margin);
+                           double log_with_gross, double margin);
 
 }  // namespace palpate

@@ -146,6 +146,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.log_evidence = log_evidence_of_all(w.best, w.probabilities[w.best], contenders, context);
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
                                                     context.likelihood, contenders.evidences);
+  w.log_near_over_paths = contenders.evidences.log_near_over_paths;
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
   w.inflation = seen.noise_inflation * seen.student_inflation + stated.form_inflation();
   const auto& best = contenders.fits[w.best];
@@ -289,8 +290,8 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   }
   contenders = decided(std::move(contenders), context, margin_of(options));
   contenders = with_edges(std::move(contenders), context, edges);
-  contenders =
-      with_near_parts(std::move(contenders), context, options.near_parts, margin_of(options));
+  contenders = with_near_parts(std::move(contenders), context, options.near_parts,
+                               options.log_near_with_gross, margin_of(options));
   Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),
                                         context, seen, stated, std::move(best_placed));
   weighing.unqualified_probe = options.unqualified_probe;

@@ -30,6 +30,10 @@ struct WeighOptions {
   /// log odds against the gross errors of the touches that were set aside for the classes: those
   /// of "unclassified", which needs none, are higher by them.
   double log_odds_against_gross = 0.0;
+  /// log of the evidence that parts near a class have on all touches, with those that were set
+  /// aside, over that of free paths (Weighing::log_near_over_paths): to such a part none of them
+  /// is gross.
+  double log_near_with_gross = kNoEvidence;
   /// Of the weighings before; of this one afterwards. nullptr = nothing is kept.
   KeptSections* kept_sections = nullptr;
 };
@@ -48,6 +52,9 @@ struct Weighing {
   double log_evidence = kNoEvidence;
   /// log odds of "unclassified" over all classes, whatever their priors of shapes (posterior.h).
   double margin_of_unclassified = 0.0;
+  /// Of touches that all lie apart: log of the evidence of parts near a class over that of free
+  /// paths (near_parts.h).
+  double log_near_over_paths = kNoEvidence;
   /// Share of the spline's posterior in its mode on the other side of c = 0.
   double rival_share = 0.0;
   /// Of the best class on the reduced points, if it has any: input of moments_of_best().
