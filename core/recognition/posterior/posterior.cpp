@@ -98,8 +98,6 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
   }
   if (matters(log_of[kSpline]) && evidences.classes[kSpline] &&
       !has_straight_paths(evidences, CurveClass::CubicSpline)) {
-    // Of a class that is only one of several, Laplace's formula tells the other mode's share well
-    // enough.
     const FitData& points = points_of(*on_reduced[kSpline], reduced);
     evidences.rival = rival_of(*on_reduced[kSpline], points, evidences.inflation, work);
     const auto held = evidences.rival ? share_in_slices(*evidences.classes[kSpline],
@@ -108,7 +106,8 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
     if (held) {
       evidences.rival_in_slices = *held;
       evidences.rival.reset();
-    } else if (evidences.rival && spline_is_best) {
+    } else if (evidences.rival) {
+      // Laplace's formula would have all widths of the prior where the square of c alone is told.
       evidences.rival = by_slices(*std::move(evidences.rival), points, evidences.inflation,
                                   Slices::ForMass, work);
     }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <random>
 
 #include "tests/support/scene_data.h"
 #include "tests/support/scene_prior.h"
@@ -45,6 +46,40 @@ TEST(FollowedAnswers, KeepWhatIsHardToFind) {
   }
   for (const std::uint32_t number : {1515U, 1770U, 2094U}) {
     expect_not_lost(8, number, false);
+  }
+}
+
+/// Two flanks of a parabola leave a spline's shape open along a flat valley.
+TEST(FollowedAnswers, OfAParabolaHaveTheSplineThatASearchHas) {
+  constexpr double kA_m = 0.005;
+  constexpr double kSigma_m = 5e-5;
+  constexpr int kCount = 120;   // samples of a stroke
+  constexpr int kAnswered = 8;  // at a time
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigma_m);
+  for (int scene = 0; scene < test::stress_count(40); ++scene) {
+    Recognizer at_once;
+    Recognizer followed;
+    for (const std::uint32_t patch : {0U, 1U}) {
+      const double side = patch == 0 ? 1.0 : -1.0;
+      for (int i = 0; i < kCount; ++i) {
+        const double t = side * (1.5 + static_cast<double>(i) / (kCount - 1));
+        const Vec2 noise(normal(rng), normal(rng));
+        const ContactSample sample{Vec2(kA_m * t * t, 2.0 * kA_m * t) + noise, kSigma_m, 0};
+        at_once.add({.patch = patch}, {&sample, 1});
+        followed.add({.patch = patch}, {&sample, 1});
+        if (i % kAnswered == 0) followed.recognize();
+      }
+    }
+    const auto of_spline = [](const Recognition& answer) {
+      const Hypothesis* found = test::hypothesis_of(answer, CurveClass::CubicSpline);
+      return found != nullptr ? found->probability : 0.0;
+    };
+    const double searched = of_spline(at_once.recognize());
+    const double kept = of_spline(followed.recognize());
+    // What either may miss of the other's (DoNotLoseTheTruth).
+    EXPECT_TRUE(kept < 1e-2 || searched > 1e-3) << "searched " << searched << ", kept " << kept;
+    EXPECT_TRUE(searched < 1e-2 || kept > 1e-3) << "searched " << searched << ", kept " << kept;
   }
 }
 
