@@ -12,6 +12,7 @@
 
 #include "node/client/connection.h"
 #include "node/csv/contact_csv.h"
+#include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/process/clock.h"
 #include "node/process/quiet_protobuf.h"
@@ -66,7 +67,8 @@ void add_options(CLI::App& app, CommandLine& options) {
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->type_name("S");
-  app.add_option("--wait", options.wait_s, "Seconds to wait for a recognizer before giving up")
+  app.add_option("--wait", options.wait_s,
+                 "Seconds to wait for a recognizer, or with --fast for room, before giving up")
       ->check(CLI::Range(0.0, 1e6))
       ->capture_default_str()
       ->type_name("S");
@@ -179,8 +181,7 @@ struct Player {
   int publish(const std::vector<sim::Scene>& scenes) {
     client::ContactPublisherOptions publisher_options;
     publisher_options.endpoint = options.contacts;
-    // Room for the messages that accumulate when playing as fast as possible.
-    publisher_options.high_water_mark = options.fast ? 100000 : 1000;
+    publisher_options.all_readers_or_none = options.fast;
     if (!options.own_key.empty()) {
       Result<CurveClient> curve =
           client::read_curve_client(options.own_key, options.recognizer_key);
@@ -189,23 +190,32 @@ struct Player {
     }
     client::ContactPublisher publisher(publisher_options);
     if (const int code = wait_for_recognizer(publisher); code != kPlayed) return code;
+    std::uint64_t refused = 0;
     for (std::uint64_t round = 0; options.repeat == 0 || round < options.repeat; ++round) {
       for (const sim::Scene& scene : scenes) {
         const bool is_first = round == 0 && &scene == &scenes.front();
-        if (!is_first && sim::wait_or_stop(options.pause_s, stop_fd)) return kPlayed;
+        if (!is_first && sim::wait_or_stop(options.pause_s, stop_fd)) return code_of(refused);
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
         if (!tell_truth(scene, probes, object))
           return failed(options.truth + ": cannot be written");
         std::vector<sim::TimedBatch> batches = sim::make_batches(scene, probes, object);
         const sim::PlaybackCounts counts =
-            sim::play(batches, probes, options.fast ? 0.0 : options.speed, stop_fd, publisher);
+            sim::play(batches, probes, options.fast ? 0.0 : options.speed, options.wait_s, stop_fd,
+                      publisher);
         if (!options.quiet) std::cerr << summary(scene, counts, object);
-        if (counts.stopped) return kPlayed;
+        refused += counts.refused;
+        if (counts.stopped || (options.fast && refused > 0)) return code_of(refused);
       }
     }
     publisher.finish_within();
-    return kPlayed;
+    return code_of(refused);
+  }
+
+  int code_of(std::uint64_t refused) const {
+    return refused == 0 ? kPlayed
+                        : failed(counted(refused, "message") + " not taken: the recognizer at " +
+                                 options.contacts + " is behind or has gone");
   }
 
   /// Waits in short steps, so that a stop signal is noticed.

@@ -9,6 +9,20 @@
 #include "node/process/clock.h"
 
 namespace palpate::sim {
+namespace {
+
+/// Waits for room, `longest_wait_s` at most or until a stop is asked for.
+bool publish(const std::string& probe, v1::ContactBatch& batch, double longest_wait_s, int stop_fd,
+             client::ContactPublisher& publisher) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  return publisher.publish_when_room(probe, batch, [&] {
+    return std::chrono::duration<double>(Clock::now() - start).count() >= longest_wait_s ||
+           wait_or_stop(0.0, stop_fd);
+  });
+}
+
+}  // namespace
 
 bool wait_or_stop(double seconds, int stop_fd) {
   using Clock = std::chrono::steady_clock;
@@ -25,7 +39,8 @@ bool wait_or_stop(double seconds, int stop_fd) {
 }
 
 PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
-                    double speed, int stop_fd, client::ContactPublisher& publisher) {
+                    double speed, double longest_wait_s, int stop_fd,
+                    client::ContactPublisher& publisher) {
   PlaybackCounts counts;
   const bool paced = speed > 0.0;
   const double scale = paced ? 1.0 / speed : 0.0;
@@ -43,10 +58,17 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
     for (v1::ContactSample& sample : *timed.batch.mutable_samples()) {
       sample.set_stamp_ns(paced ? due_ns(1e-9 * static_cast<double>(sample.stamp_ns())) : now_ns);
     }
-    const bool taken = publisher.publish(probes[timed.probe].name, timed.batch);
+    // At the scene's pace it does as probes do, which wait for nobody.
+    const double give_up_s = paced ? 0.0 : longest_wait_s;
+    const bool taken =
+        publish(probes[timed.probe].name, timed.batch, give_up_s, stop_fd, publisher);
     counts.refused += taken ? 0 : 1;
     ++counts.messages;
     counts.samples += static_cast<std::uint64_t>(timed.batch.samples_size());
+    if (!taken && !paced) {
+      counts.stopped = wait_or_stop(0.0, stop_fd);
+      break;
+    }
   }
   return counts;
 }

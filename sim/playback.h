@@ -13,15 +13,17 @@ namespace palpate::sim {
 struct PlaybackCounts {
   std::uint64_t messages = 0;
   std::uint64_t samples = 0;
-  std::uint64_t refused = 0;  ///< messages that the socket did not accept
+  std::uint64_t refused = 0;  ///< messages that had no room: the recognizer is behind or gone
   bool stopped = false;       ///< by a signal
 };
 
 /// Publishes the batches in order, each when its last sample is due, `speed` times as fast as the
-/// scene; 0 = without waiting. Stamps the samples with the Unix time at which they are due. Ends
+/// scene; 0 = as fast as there is room for them, and ends early where there is none for
+/// `longest_wait_s`. Stamps the samples with the Unix time at which they are due. Ends
 /// early when `stop_fd` is readable. Modifies the batches.
 PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
-                    double speed, int stop_fd, client::ContactPublisher& publisher);
+                    double speed, double longest_wait_s, int stop_fd,
+                    client::ContactPublisher& publisher);
 
 /// Waits for the given time. Returns true if `stop_fd` became readable.
 bool wait_or_stop(double seconds, int stop_fd);

@@ -1,6 +1,7 @@
 #include "node/client/contact_publisher.h"
 
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "node/process/clock.h"
@@ -26,6 +27,10 @@ ContactPublisher::ContactPublisher(const ContactPublisherOptions& options)
       epoch_(random_epoch()) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);
+  // Without it libzmq drops at the high-water mark and reports success.
+  if (!endpoint.value->bind || options.all_readers_or_none) {
+    socket_.set(zmq::sockopt::xpub_nodrop, true);
+  }
   if (const std::string error = attach(socket_, *endpoint.value); !error.empty()) {
     throw std::runtime_error(error);
   }
@@ -58,6 +63,11 @@ bool ContactPublisher::wait_for_recognizer(std::chrono::milliseconds timeout) {
 }
 
 bool ContactPublisher::publish(std::string_view probe, v1::ContactBatch& batch) {
+  return publish_when_room(probe, batch, [] { return true; });
+}
+
+bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatch& batch,
+                                         const std::function<bool()>& give_up) {
   auto found = probes_.find(probe);
   if (found == probes_.end()) {
     if (!is_valid_name(probe)) return false;
@@ -71,7 +81,13 @@ bool ContactPublisher::publish(std::string_view probe, v1::ContactBatch& batch) 
   header.set_seq(state.next_seq++);
   header.set_stamp_ns(unix_time_ns());
   batch.SerializeToString(&buffer_);
-  return send_now(socket_, state.topic, buffer_);
+  while (!send_now(socket_, state.topic, buffer_)) {
+    if (give_up()) return false;
+    // An XPUB is always writable to a poll, so there is nothing to wait for but time.
+    constexpr std::chrono::milliseconds kAgain{1};
+    std::this_thread::sleep_for(kAgain);
+  }
+  return true;
 }
 
 void ContactPublisher::finish_within(std::chrono::milliseconds longest) {

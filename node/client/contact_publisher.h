@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,16 +21,21 @@ struct ContactPublisherOptions {
   /// The recognizer's contacts endpoint. An address without "bind:" or "connect:" is connected to.
   std::string endpoint{kDefaultContactsEndpoint};
   std::optional<CurveClient> curve;
-  /// Messages that may wait for a slow recognizer. Further ones are lost.
+  /// Messages that may wait for a slow recognizer. publish() refuses further ones.
   int high_water_mark = 1000;
+  /// Several readers may connect to an endpoint that is bound. False: one that is behind loses
+  /// messages alone, holds up no other, and sees it in seq; publish() does not tell. True:
+  /// publish() refuses a message for all of them as long as one has no room. A publisher that
+  /// connects has one reader, and always refuses.
+  bool all_readers_or_none = false;
 };
 
-/// Publishes contacts of one or more probes. Never blocks: messages that cannot be delivered are
-/// lost and leave a gap in seq. Reconnects by itself. Not thread-safe.
+/// Publishes contacts of one or more probes. publish() never blocks: messages that cannot be
+/// delivered are lost and leave a gap in seq. Reconnects by itself. Not thread-safe.
 class ContactPublisher {
  public:
-  /// Throws std::invalid_argument if the endpoint is malformed and zmq::error_t if it cannot be
-  /// attached.
+  /// Throws std::invalid_argument if the endpoint is malformed and std::runtime_error if it cannot
+  /// be attached.
   explicit ContactPublisher(const ContactPublisherOptions& options = {});
 
   /// Waits until a recognizer listens. Returns false after `timeout`, or at once if the recognizer
@@ -42,8 +48,15 @@ class ContactPublisher {
 
   /// Publishes the batch on `contact/<probe>/`. Sets source, epoch, seq and stamp of its header;
   /// the frame stays as given. Returns false if the probe's name is invalid (nothing is sent) or if
-  /// the message was dropped at the high-water mark.
+  /// the message was dropped at the high-water mark. A message that has no listener yet is lost,
+  /// and counts as published.
   bool publish(std::string_view probe, v1::ContactBatch& batch);
+
+  /// Like publish(), for samples that can wait, as those of a file: waits at the high-water mark
+  /// until there is room, or until give_up(), which it asks every millisecond, returns true. The
+  /// message is lost only then.
+  bool publish_when_room(std::string_view probe, v1::ContactBatch& batch,
+                         const std::function<bool()>& give_up);
 
   /// Longest time that the destructor waits for messages that are published but not sent; 0.1 s if
   /// never called. A slow recognizer then still gets them; a recognizer that has gone is not waited

@@ -72,12 +72,14 @@ bool drain(zmq::socket_t& socket, TwoFrames& message, int most,
   return true;
 }
 
-/// Sends without blocking. Returns false if there is no peer or its high-water mark drops the
-/// message.
+/// Sends without blocking. Returns false if the socket does not take the message now. A publishing
+/// socket takes all: it drops what nobody subscribes to, and what a full queue has no room for.
+/// Only with ZMQ_XPUB_NODROP is a message false that a full queue has no room for; nobody gets it
+/// then.
 bool send_now(zmq::socket_t& socket, std::string_view topic, std::string_view payload);
 
 /// Forwards a received message unchanged and without copying; its frames are empty afterwards.
-/// Never blocks. Returns false if the peer's high-water mark drops it.
+/// Never blocks. Returns false if the socket does not take it now; see send_now().
 bool forward_now(zmq::socket_t& socket, TwoFrames& message);
 
 /// Polls for at most `timeout_ms`. A signal ends it early, like a timeout.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "node/client/contact_publisher.h"
+#include "node/files/counted.h"
 #include "node/files/recording.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
@@ -219,6 +220,36 @@ class Pace {
   bool started_ = false;
 };
 
+/// The exit code if no recognizer comes, or if a stop is asked for before.
+std::optional<int> wait_for_recognizer(const ReplayCommand& command, int stop_fd,
+                                       Progress& progress, client::ContactPublisher& publisher) {
+  const std::string& endpoint = command.connection.endpoint;
+  const auto give_up = Clock::now() + std::chrono::duration<double>(command.wait_s);
+  while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
+    if (!publisher.refusal().empty()) {
+      return complain("the recognizer at " + endpoint + " " + publisher.refusal(), kFailed);
+    }
+    progress.tell([&] { return "waiting for a recognizer at " + endpoint; });
+    if (stop_requested(stop_fd)) return kDone;
+    if (Clock::now() >= give_up) {
+      return complain("no recognizer listens at " + endpoint, kFailed);
+    }
+  }
+  return std::nullopt;
+}
+
+/// At its own pace a recording does as its probes did, which wait for nobody. As fast as possible
+/// it waits for room, but not for longer than for a recognizer to come.
+bool publish(const ReplayCommand& command, TimedMessage& message, int stop_fd,
+             client::ContactPublisher& publisher) {
+  if (!command.fast) return publisher.publish(message.probe, message.batch);
+  const Clock::time_point start = Clock::now();
+  const auto waited_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  return publisher.publish_when_room(message.probe, message.batch, [&] {
+    return stop_requested(stop_fd) || waited_s() > command.wait_s;
+  });
+}
+
 int run(const ReplayCommand& command) {
   const auto curve = curve_of(command.connection);
   if (!curve) {
@@ -249,23 +280,10 @@ int run(const ReplayCommand& command) {
   client::ContactPublisherOptions options;
   options.endpoint = command.connection.endpoint;
   options.curve = *curve.value;
-  options.high_water_mark = command.fast ? 100000 : 1000;
+  options.all_readers_or_none = command.fast;
   client::ContactPublisher publisher(options);
-  const auto give_up =
-      std::chrono::steady_clock::now() + std::chrono::duration<double>(command.wait_s);
   Progress progress;
-  while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
-    if (!publisher.refusal().empty()) {
-      return complain("the recognizer at " + options.endpoint + " " + publisher.refusal(), kFailed);
-    }
-    progress.tell([&] { return "waiting for a recognizer at " + options.endpoint; });
-    if (stop_requested(stop_fd)) {
-      return kDone;
-    }
-    if (std::chrono::steady_clock::now() >= give_up) {
-      return complain("no recognizer listens at " + command.connection.endpoint, kFailed);
-    }
-  }
+  if (const auto end = wait_for_recognizer(command, stop_fd, progress, publisher)) return *end;
   // Objects of the recording become new ones: a second replay is another touch of the part.
   const auto first_object = static_cast<std::uint64_t>(unix_time_ns() / 1'000'000);
   std::map<std::uint64_t, std::uint64_t> objects;
@@ -290,7 +308,10 @@ int run(const ReplayCommand& command) {
     }
     ++messages;
     samples += static_cast<std::uint64_t>(message.batch.samples_size());
-    refused += publisher.publish(message.probe, message.batch) ? 0 : 1;
+    const bool is_taken = publish(command, message, stop_fd, publisher);
+    is_stopped = !is_taken && stop_requested(stop_fd);
+    refused += is_taken ? 0 : 1;
+    if (is_stopped || (!is_taken && command.fast)) break;
     progress.tell([&] {
       return command.file + ": " + std::to_string(messages) + " messages, " +
              std::to_string(samples) + " samples";
@@ -299,7 +320,7 @@ int run(const ReplayCommand& command) {
   progress.end();
   if (!is_stopped) publisher.finish_within();
   std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
-  std::cerr << (refused > 0 ? ", " + std::to_string(refused) + " not taken\n" : "\n");
+  std::cerr << (refused > 0 ? ", " + counted(refused, "message") + " not taken\n" : "\n");
   const bool is_whole = !recording || recording->report();
   return refused == 0 && is_whole ? kDone : kFailed;
 }
@@ -321,7 +342,9 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->type_name("FACTOR");
   command->add_flag("--fast", replay->fast, "As fast as possible");
   command->add_flag("--keep-objects", replay->keep_objects, "Keep the recorded object numbers");
-  command->add_option("--wait", replay->wait_s, "Seconds to wait for a recognizer before giving up")
+  command
+      ->add_option("--wait", replay->wait_s,
+                   "Seconds to wait for a recognizer, or with --fast for room, before giving up")
       ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
