@@ -11,6 +11,7 @@
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/given/given_correlation.h"
 #include "core/recognition/posterior/likelihood.h"
+#include "core/recognition/samples/joined_runs.h"
 #include "core/recognition/verdict/determined.h"
 #include "node/wire/convert.h"
 
@@ -48,9 +49,10 @@ Vec2 into_material(const ProbedPatch& run, std::size_t i) {
   return run.context.material_side == MaterialSide::Left ? left_of(travel) : -left_of(travel);
 }
 
-/// The points of a fit, from runs whose probe offsets are already subtracted.
+/// The points of a fit, from runs whose probe offsets are already subtracted. `set_aside`: places
+/// of points that do not count.
 std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
-                                  std::span<const std::size_t> left_out) {
+                                  std::span<const std::size_t> set_aside) {
   std::vector<GivenPoint> points;
   std::size_t stroke = 0;
   for (const ProbedPatch& run : runs) {
@@ -73,9 +75,7 @@ std::vector<GivenPoint> points_of(std::span<const ProbedPatch> runs,
       points.push_back(point);
     }
   }
-  for (const std::size_t number : left_out) {
-    points.at(number - 1).set_aside = true;
-  }
+  for (const std::size_t place : set_aside) points.at(place).set_aside = true;
   return points;
 }
 
@@ -89,7 +89,7 @@ struct PointsFitted {
 
 PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
                       std::span<const ProbeCharacter* const> probes,
-                      std::span<const std::size_t> left_out, const GivenOptions& options) {
+                      std::span<const std::size_t> set_aside, const GivenOptions& options) {
   std::vector<ProbedPatch> raw;
   for (const ContactRun& run : runs) {
     const ProbeCharacter* probe = probes.empty() ? nullptr : probes[run.context.probe];
@@ -100,7 +100,7 @@ PointsFitted fit_runs(CurveClass curve_class, std::span<const ContactRun> runs,
   std::vector<ProbedPatch> corrected = raw;
   PointsFitted fitted;
   for (int round = 0;; ++round) {
-    fitted.points = points_of(corrected, left_out);
+    fitted.points = points_of(corrected, set_aside);
     fitted.fit = fit_given_class(curve_class, fitted.points, options);
     const auto curve = probed && has_curve(fitted.fit)
                            ? make_curve(curve_class, fitted.fit.shape.values)
@@ -136,8 +136,11 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
                                         std::span<const ProbeCharacter* const> probes,
                                         std::span<const std::size_t> left_out,
                                         const RecognizerOptions& options) {
-  auto [points, fit, most_chi2] =
-      fit_runs(curve_class, runs, probes, left_out, {options.sigma_m, options.touched_from});
+  const JoinedRuns joined = joined_runs(runs);
+  std::vector<std::size_t> set_aside;
+  for (const std::size_t number : left_out) set_aside.push_back(joined.place_of.at(number - 1));
+  auto [points, fit, most_chi2] = fit_runs(curve_class, joined.runs, probes, set_aside,
+                                           {options.sigma_m, options.touched_from});
   const bool fitted = fit.status == GivenStatus::Fitted;
   v1::GivenClassAnswer given;
   v1::Recognition& answer = *given.mutable_recognition();
@@ -147,7 +150,7 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
     given.add_left_out(static_cast<std::uint32_t>(number));
   }
   answer.set_curve_class(to_wire(curve_class));
-  answer.set_sample_count(points.size());
+  answer.set_sample_count(points.size() - left_out.size());
   v1::Hypothesis& hypothesis = *answer.add_hypotheses();
   hypothesis.set_curve_class(answer.curve_class());
   hypothesis.set_probability(1.0);
@@ -206,16 +209,14 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   answer.set_sigma_m(fit.sigma_m);
   given.set_rms_m(fit.rms_m);
   given.set_peak_to_valley_m(fit.peak_to_valley_m);
-  for (const GivenResidual& residual : fit.residuals) {
-    given.add_residual_m(residual.distance_m);
+  const bool has_normals = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
+    return point.normal_sigma_rad > 0.0;
+  });
+  for (const std::size_t place : joined.place_of) {
+    given.add_residual_m(fit.residuals[place].distance_m);
+    if (has_normals) given.add_residual_normal_rad(fit.residuals[place].normal_rad);
   }
   given.set_normal_count(fit.normals);
-  if (std::any_of(points.begin(), points.end(),
-                  [](const GivenPoint& point) { return point.normal_sigma_rad > 0.0; })) {
-    for (const GivenResidual& residual : fit.residuals) {
-      given.add_residual_normal_rad(residual.normal_rad);
-    }
-  }
   return given;
 }
 

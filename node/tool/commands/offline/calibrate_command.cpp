@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/recognition/samples/joined_runs.h"
 #include "node/files/overwritten_input.h"
 #include "node/files/printable.h"
 #include "node/files/probe_file.h"
@@ -72,7 +73,7 @@ Result<std::vector<ArtefactRecording>> read_recordings(const CalibrateCommand& c
         complain(file + ": " + note, kDone);
       }
       ArtefactRecording& recording = recordings.emplace_back();
-      for (const ContactRun& run : group.runs) {
+      for (const ContactRun& run : joined_runs(group.runs).runs) {
         recording.strokes.push_back({run.samples, run.context.tip_radius_m});
       }
     }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/local/estimator.h"
+#include "core/recognition/samples/joined_runs.h"
 #include "node/files/counted.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
@@ -123,7 +124,7 @@ int run(EstimateCommand& command) {
         !note.empty()) {
       complain(command.file + ": " + note, kDone);
     }
-    for (const ContactRun& run : group.runs) {
+    for (const ContactRun& run : joined_runs(group.runs).runs) {
       const std::string& probe = group.probes[run.context.probe];
       std::vector<Vec2> points;
       for (const ContactSample& sample : run.samples) {

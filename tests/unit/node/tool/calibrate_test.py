@@ -58,6 +58,19 @@ class Calibrate(unittest.TestCase):
                                ("cubic-spline A,B,C", "in powers of metres")):
             self.assertRegex(out, f"--{artefact}.*{re.escape(unit)}")
 
+    def test_patches_that_take_turns_in_a_file_are_strokes(self):
+        """A lag is told by strokes that run both ways."""
+        header, *rows = ellipse(0.03, 0.02, 1).splitlines(keepends=True)
+        back = [row.replace("p,0,", "p,1,") for row in reversed(rows)]
+        answers = []
+        for text in (rows + back, [row for pair in zip(rows, back) for row in pair]):
+            code, out, err = run(TOOL, "calibrate", "--ellipse", "0.03,0.02", "--format", "json", "-",
+                                 text_in=header + "".join(text))
+            self.assertEqual(code, 0, err)
+            answers.append(out)
+        self.assertIn("lag", answers[0])
+        self.assertEqual(*answers)
+
     def test_the_words_of_a_picture_stay_on_its_page(self):
         plot = self.folder / "lobes.svg"
         # More samples than are drawn, which takes a sentence more.

@@ -35,6 +35,13 @@ class Estimate(unittest.TestCase):
                 self.assertEqual((row["probe"], row["patch"]), ("p", "4"))
                 self.assertLess(abs(float(row["kappa_per_m"]) * RADIUS - 1), tolerance, name)
 
+    def test_probes_that_take_turns_in_a_file_have_patches_of_their_own(self):
+        header, *rows = circle().replace("\n", ",part\n").replace("y_m,part", "y_m,group").splitlines(keepends=True)
+        others = ["q" + row[1:] for row in rows]
+        in_turn = self.rows("--window", 31, text=header + "".join(a + b for a, b in zip(rows, others)))
+        self.assertEqual(in_turn, self.rows("--window", 31, text=header + "".join(rows + others)))
+        self.assertGreater(len(in_turn), 10)
+
     def test_windows_follow_one_another_by_the_shift(self):
         rows = self.rows("--window", 51, "--shift", 7)
         first = [int(row["first_sample"]) for row in rows]

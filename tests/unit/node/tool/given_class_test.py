@@ -46,6 +46,31 @@ class GivenClass(unittest.TestCase):
         self.assertEqual(len(answer.residual_m), 4)
         self.assertFalse(answer.sigma_stated)
 
+    def test_probes_that_take_turns_in_a_file_draw_strokes(self):
+        """Neighbours along a stroke, and its direction of travel, whatever the order of the rows of two probes."""
+        rng = random.Random(7)
+        rows = {}
+        for probe, start in (("l", 0.0), ("r", 2.5)):
+            noise = 0.0
+            rows[probe] = []
+            for i in range(150):
+                t = start + 0.012 * i
+                noise = 0.9 * noise + rng.gauss(0, 2e-6)
+                radius = 0.02 + 0.001 + noise  # the tip's centres lie outside
+                rows[probe].append(f"{probe},0,{radius * math.cos(t)!r},{radius * math.sin(t)!r},1e-6,0.001,left,part\n")
+        header = "probe,patch,x_m,y_m,sigma_m,tip_radius_m,material_side,group\n"
+        in_turn = [row for pair in zip(rows["l"], rows["r"]) for row in pair]
+        _, (strokes,), _ = fit(header + "".join(rows["l"] + rows["r"]), "--class", "circle", "--leave-out", "2")
+        _, (turns,), _ = fit(header + "".join(in_turn), "--class", "circle", "--leave-out", "3")
+        self.assertGreater(strokes.recognition.noise_correlation_m, 0)
+        self.assertEqual(turns.recognition.noise_correlation_m, strokes.recognition.noise_correlation_m)
+        self.assertEqual(turns.recognition.parameters, strokes.recognition.parameters)
+        self.assertEqual(turns.recognition.covariance, strokes.recognition.covariance)
+        self.assertEqual(list(turns.left_out), [3])
+        self.assertEqual(turns.residual_m[0::2], strokes.residual_m[:150])
+        self.assertEqual(turns.residual_m[1::2], strokes.residual_m[150:])
+        self.assertEqual(turns.recognition.sample_count, 299)
+
     def test_form_and_chi_square_are_told(self):
         points = [(0.01 * math.cos(i) * (1 + 1e-3 * (-1) ** i), 0.01 * math.sin(i) * (1 + 1e-3 * (-1) ** i))
                   for i in range(12)]
