@@ -23,8 +23,8 @@ bool noise_is_known(const FitInput& input, const RecognizerOptions& options,
   return input.noise_is_known || options.sigma_m > 0.0 || answer.probe_files_size() > 0;
 }
 
-void add_recognised(const FitRequest& fit, const FitInput& input,
-                    const std::vector<QualifiedProbe>& probes, bool json, FitAnswer* told) {
+void add_recognised(const FitRequest& fit, const FitInput& input, const ProbeFiles& probes,
+                    bool json, FitAnswer* told) {
   RecognizerOptions options = fit.recognizer;
   const bool patches_are_bounded =
       std::find(fit.said.begin(), fit.said.end(), "most_patches") != fit.said.end();
@@ -37,9 +37,8 @@ void add_recognised(const FitRequest& fit, const FitInput& input,
                     : report_text(told->answer, noise_is_known(input, options, told->answer));
 }
 
-void add_given(const FitRequest& fit, const FitInput& input,
-               const std::vector<QualifiedProbe>& probes, const std::vector<std::size_t>& left_out,
-               bool json, FitAnswer* told) {
+void add_given(const FitRequest& fit, const FitInput& input, const ProbeFiles& probes,
+               const std::vector<std::size_t>& left_out, bool json, FitAnswer* told) {
   told->notes = input.notes;
   const v1::GivenClassAnswer given = fit_given({*curve_class_from_name(fit.given_class), left_out},
                                                input.group, fit.recognizer, probes, told->notes);
@@ -49,8 +48,7 @@ void add_given(const FitRequest& fit, const FitInput& input,
 
 }  // namespace
 
-FitAnswer fit_answer(const FitRequest& fit, FitInput input,
-                     const std::vector<QualifiedProbe>& probes,
+FitAnswer fit_answer(const FitRequest& fit, FitInput input, const ProbeFiles& probes,
                      const std::vector<std::size_t>& left_out, bool json) {
   // By the numbers that the samples have in the file, so before any is left out.
   const std::optional<Finding> approach = judge_approaches(input.group, input.is_alone, left_out);
@@ -76,7 +74,7 @@ FitAnswer fit_answer(const FitRequest& fit, FitInput input,
     told.notes.push_back(std::move(note));
   };
   say(note_of_tip_side(told.measured, told.answer, from));
-  if (probes.empty()) {  // else a probe file may know the tip
+  if (probes.all().empty()) {  // else a probe file may know the tip
     say(note_of_unused_side(input.group, from));
   }
   // A class that is given is fitted to all samples: none is set aside as a spike.

@@ -26,8 +26,7 @@ struct FitAnswer {
 
 /// `left_out`: samples that do not count, numbered from 1 as the file has them. `json`: the text is
 /// a JSON line.
-FitAnswer fit_answer(const FitRequest& fit, FitInput input,
-                     const std::vector<QualifiedProbe>& probes,
+FitAnswer fit_answer(const FitRequest& fit, FitInput input, const ProbeFiles& probes,
                      const std::vector<std::size_t>& left_out, bool json);
 
 }  // namespace palpate

@@ -263,7 +263,8 @@ void add_fit_command(CLI::App& app, int& exit_code) {
           "--probe", fit->probe_files,
           "Probe file of palpate calibrate: its offsets are taken off by the normals "
           "found, its noise, drift and tip radius count, and the answer names it. May be "
-          "repeated: of several files each is for the probe that it names. Not with --part")
+          "repeated: of several files each is for the probe that it names, and one without a name "
+          "for all others. Not with --part")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("FILE");

@@ -28,14 +28,12 @@ void tell_of(FitInput* input, const FitRequest& fit) {
 std::optional<FitFiles> read_fit_files(const FitRequest& fit) {
   FitFiles files;
   bool bad = false;
-  for (const std::string& file : fit.probe_files) {
-    Result<QualifiedProbe> probe = read_probe(file);
-    if (!probe) {
-      complain(probe.error, kUsage);
-      return std::nullopt;
-    }
-    files.probes.push_back(*std::move(probe.value));
+  Result<ProbeFiles> probes = ProbeFiles::read(fit.probe_files);
+  if (!probes) {
+    complain(probes.error, kUsage);
+    return std::nullopt;
   }
+  files.probes = *std::move(probes.value);
   for (const std::string& file : fit.files) {
     Result<std::vector<FitInput>> read =
         read_fit_input(file, options_of(fit.file), fit.recognizer.sigma_m);

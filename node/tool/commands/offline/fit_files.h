@@ -6,14 +6,14 @@
 #include <optional>
 #include <vector>
 
-#include "node/files/probe_file.h"
+#include "node/files/probe_files.h"
 #include "node/tool/commands/offline/fit_input.h"
 #include "node/tool/commands/offline/fit_request.h"
 
 namespace palpate {
 
 struct FitFiles {
-  std::vector<QualifiedProbe> probes;
+  ProbeFiles probes;
   std::vector<FitInput> inputs;
   std::vector<std::size_t> left_out;  ///< samples of the only input, numbered from 1
 };

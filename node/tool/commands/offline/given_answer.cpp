@@ -9,8 +9,7 @@
 namespace palpate {
 
 v1::GivenClassAnswer fit_given(const GivenClass& given, const ContactGroup& group,
-                               const RecognizerOptions& options,
-                               const std::vector<QualifiedProbe>& probes,
+                               const RecognizerOptions& options, const ProbeFiles& probes,
                                std::vector<std::string>& notes) {
   std::vector<std::string> files;
   const std::vector<const ProbeCharacter*> characters = characters_of(group, probes, files, notes);

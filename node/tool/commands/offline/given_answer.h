@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
-#include "node/files/probe_file.h"
+#include "node/files/probe_files.h"
 #include "node/tool/contact_groups.h"
 #include "palpate/v1/given_class.pb.h"
 
@@ -19,8 +19,7 @@ struct GivenClass {
 
 /// By qualified probes where there are any. `notes` receives what is to be said beside the answer.
 v1::GivenClassAnswer fit_given(const GivenClass& given, const ContactGroup& group,
-                               const RecognizerOptions& options,
-                               const std::vector<QualifiedProbe>& probes,
+                               const RecognizerOptions& options, const ProbeFiles& probes,
                                std::vector<std::string>& notes);
 
 }  // namespace palpate

@@ -21,23 +21,18 @@ std::int64_t newest_stamp_ns(const ContactGroup& group) {
   return newest;
 }
 
-/// The qualified probe of that name, or the only one there is.
-const QualifiedProbe* probe_called(const std::string& name,
-                                   const std::vector<QualifiedProbe>& probes) {
-  if (probes.size() == 1) return &probes.front();
-  const auto found = std::find_if(probes.begin(), probes.end(), [&](const QualifiedProbe& probe) {
-    return probe.described.name() == name;
-  });
-  return found == probes.end() ? nullptr : &*found;
+/// The file of that probe, or the only one there is: who gives one file means it.
+const QualifiedProbe* probe_called(const std::string& name, const ProbeFiles& probes) {
+  return probes.all().size() == 1 ? &probes.all().front() : probes.of(name);
 }
 
 }  // namespace
 
 std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
-                                                 const std::vector<QualifiedProbe>& probes,
+                                                 const ProbeFiles& probes,
                                                  std::vector<std::string>& files,
                                                  std::vector<std::string>& notes) {
-  if (probes.empty()) return {};
+  if (probes.all().empty()) return {};
   std::vector<const ProbeCharacter*> characters(group.probes.size(), nullptr);
   std::vector<bool> told(group.probes.size(), false);
   for (const ContactRun& run : group.runs) {
@@ -85,14 +80,14 @@ void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration 
 }
 
 Answered recognise(const FitInput& input, const RecognizerOptions& options,
-                   const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes) {
+                   const ProbeFiles& probes, std::vector<std::string>& notes) {
   const ContactGroup& group = input.group;
   Answered answer;
   AddResult added;
   std::chrono::steady_clock::duration taken{};
   std::vector<std::string> probe_files;
   std::vector<std::string> probe_notes;
-  if (probes.empty()) {
+  if (probes.all().empty()) {
     Recognizer recognizer(options);
     added = add_group(group, recognizer);
     const auto start = std::chrono::steady_clock::now();

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
-#include "node/files/probe_file.h"
+#include "node/files/probe_files.h"
 #include "node/tool/commands/offline/fit_input.h"
 #include "palpate/v1/recognition.pb.h"
 
@@ -24,13 +24,13 @@ void fill_origin(const ContactGroup& group, std::chrono::steady_clock::duration 
 /// What the probes of an object are, by their number; none where `probes` is empty. `files`
 /// receives those that count, `notes` what is to be said of them.
 std::vector<const ProbeCharacter*> characters_of(const ContactGroup& group,
-                                                 const std::vector<QualifiedProbe>& probes,
+                                                 const ProbeFiles& probes,
                                                  std::vector<std::string>& files,
                                                  std::vector<std::string>& notes);
 
 /// By qualified probes where there are any (core/qualification/probed_recognition.h). `notes`
 /// receives what is to be said beside the answer.
 Answered recognise(const FitInput& input, const RecognizerOptions& options,
-                   const std::vector<QualifiedProbe>& probes, std::vector<std::string>& notes);
+                   const ProbeFiles& probes, std::vector<std::string>& notes);
 
 }  // namespace palpate

@@ -277,6 +277,16 @@ class Calibrate(unittest.TestCase):
         self.assertEqual(list(answer.probe_files), [str(other)])
         _, notes = self.fit("--probe", str(path), "--probe", str(other), text=ellipse(0.03, 0.02, 2, probe="r"))
         self.assertTrue(any("no probe file is of probe r" in note for note in notes))
+        # As on a node: one without a name is for all others, and no probe has two files.
+        rest = self.folder / "rest.probe"
+        rest.write_text(path.read_text().replace('name: "p"', 'name: ""'))
+        answer, _ = self.fit("--probe", str(path), "--probe", str(rest), text=ellipse(0.03, 0.02, 2, probe="r"))
+        self.assertEqual(list(answer.probe_files), [str(rest)])
+        answer, _ = self.fit("--probe", str(path), "--probe", str(rest), text=ellipse(0.03, 0.02, 2))
+        self.assertEqual(list(answer.probe_files), [str(path)])
+        code, _, err = run(TOOL, "fit", "--probe", path, "--probe", path, "-", text_in=ellipse(0.03, 0.02, 2))
+        self.assertEqual(code, 2)
+        self.assertIn("a probe has one file", err)
 
     def test_a_short_arc_does_not_suffice(self):
         code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=ellipse(0.025, 0.025, 1, turn=0.5))
