@@ -58,7 +58,9 @@ std::string plot_path(const std::string& path, std::size_t number) {
   if (number == 1) {
     return path;
   }
-  const std::size_t dot = path.rfind('.');
+  const std::size_t name = path.rfind('/') + 1;  // 0 without a folder
+  const std::size_t last = path.rfind('.');
+  const std::size_t dot = last == std::string::npos || last < name ? std::string::npos : last;
   const std::string stem = path.substr(0, dot);
   const std::string ending = dot == std::string::npos ? "" : path.substr(dot);
   return stem + "-" + std::to_string(number) + ending;

@@ -253,6 +253,11 @@ class Fit(unittest.TestCase):
         for name in ("plot.svg", "plot-2.svg", "invariants.svg", "invariants-2.svg"):
             root = xml.etree.ElementTree.parse(self.folder / name).getroot()
             self.assertTrue(root.tag.endswith("svg"))
+        # A dot of the folder is none of the file's.
+        folder = self.folder / "a.b"
+        folder.mkdir()
+        self.answers("--plot", folder / "plot", path)
+        self.assertEqual(sorted(each.name for each in folder.iterdir()), ["plot", "plot-2"])
 
     def test_a_bad_file_is_named_by_line_and_column_and_nothing_is_half_done(self):
         good = self.write("good.csv", HEADER + ellipse())
