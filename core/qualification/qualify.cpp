@@ -32,6 +32,18 @@ bool is_usable(std::span<const ArtefactRecording> recordings) {
   return true;
 }
 
+/// A probe has one tip, and its file one radius.
+bool is_of_one_tip(std::span<const ArtefactRecording> recordings) {
+  std::optional<double> radius_m;
+  for (const ArtefactRecording& recording : recordings) {
+    for (const ArtefactStroke& stroke : recording.strokes) {
+      if (radius_m.value_or(stroke.tip_radius_m) != stroke.tip_radius_m) return false;
+      radius_m = stroke.tip_radius_m;
+    }
+  }
+  return true;
+}
+
 bool runs_both_ways(const std::vector<ArtefactSample>& samples) {
   // An even share determines the lag to 0.6 of the error of this one.
   constexpr double kLeastShare = 0.1;
@@ -274,6 +286,8 @@ std::string_view name_of(QualificationStatus status) {
       return "too few samples";
     case QualificationStatus::NotTheArtefact:
       return "not the artefact";
+    case QualificationStatus::SeveralTips:
+      return "several tips";
   }
   return "unknown";
 }
@@ -281,6 +295,7 @@ std::string_view name_of(QualificationStatus status) {
 Qualification qualify(const Curve& artefact, std::span<const ArtefactRecording> recordings,
                       const QualificationOptions& options) {
   if (!is_usable(recordings)) return failed(QualificationStatus::NotFinite);
+  if (!is_of_one_tip(recordings)) return failed(QualificationStatus::SeveralTips);
   if (class_of(artefact) == CurveClass::Line) return failed(QualificationStatus::BadArtefact);
   const auto thin = thinned(recordings);
   if (!thin) return failed(QualificationStatus::TooFewSamples);

@@ -22,6 +22,7 @@ enum class QualificationStatus {
   BadArtefact,     ///< a line: its offset cannot be distinguished from its place
   TooFewSamples,   ///< fewer than the unknowns need
   NotTheArtefact,  ///< the artefact does not fit the samples
+  SeveralTips,     ///< strokes state different tip radii: they are of several probes
 };
 
 /// Lower-case words, for example "too few samples".

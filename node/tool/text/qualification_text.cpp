@@ -41,6 +41,9 @@ std::string why_not(QualificationStatus status) {
       return "fewer than 12 samples of the artefact in one of the recordings";
     case QualificationStatus::NotTheArtefact:
       return "the artefact cannot be laid on the samples: is it the right one, and its unit?";
+    case QualificationStatus::SeveralTips:
+      return "the samples state different tip radii: a probe has one tip, and is qualified alone "
+             "(--tip-radius gives one to samples that state none)";
     default:
       return "";
   }

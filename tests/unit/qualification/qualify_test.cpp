@@ -195,6 +195,11 @@ TEST(Qualify, RefusesWhatIsNone) {
   few.strokes.resize(1);
   few.strokes[0].samples.resize(5);
   EXPECT_EQ(qualify(scene.curve, {{few}}).status, QualificationStatus::TooFewSamples);
+  ArtefactRecording several = recording;
+  several.strokes.push_back(several.strokes.back());
+  several.strokes.back().tip_radius_m += 1e-3;
+  EXPECT_EQ(qualify(scene.curve, {{several}}).status, QualificationStatus::SeveralTips);
+  EXPECT_EQ(qualify(scene.curve, {{recording, several}}).status, QualificationStatus::SeveralTips);
   ArtefactRecording bad = recording;
   bad.strokes[0].samples[3].position_m.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(qualify(scene.curve, {{bad}}).status, QualificationStatus::NotFinite);

@@ -288,6 +288,12 @@ class Calibrate(unittest.TestCase):
         self.assertEqual(code, 2)
         self.assertIn("a probe has one file", err)
 
+    def test_two_tips_are_not_one_probe(self):
+        text = ellipse(0.025, 0.025, 1) + ellipse(0.025, 0.025, 2, tip=0.003).replace("p,0,", "p,1,").partition("\n")[2]
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=text)
+        self.assertEqual((code, out), (1, ""))
+        self.assertIn("different tip radii", err)
+
     def test_a_short_arc_does_not_suffice(self):
         code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=ellipse(0.025, 0.025, 1, turn=0.5))
         self.assertEqual(code, 1)
