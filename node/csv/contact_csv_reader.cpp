@@ -13,6 +13,7 @@
 #include "node/csv/row_detail.h"
 #include "node/csv/text_lines.h"
 #include "node/files/counted.h"
+#include "node/wire/ingest_limits.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -24,11 +25,11 @@ using csv::kColumnNames;
 using csv::kRequiredColumns;
 using csv::shown;
 
-// The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
-constexpr double kMaxCoordinateM = 1e7;
-constexpr double kMinSigmaM = 1e-15;
-constexpr double kMaxSigmaM = 1e3;
-constexpr double kMaxTipRadiusM = 1e3;
+// What the node would refuse is not used offline either.
+constexpr double kMaxCoordinateM = IngestLimits{}.max_coordinate_m;
+constexpr double kMinSigmaM = kMinSigma;
+constexpr double kMaxSigmaM = IngestLimits{}.max_sigma_m;
+constexpr double kMaxTipRadiusM = IngestLimits{}.max_tip_radius_m;
 constexpr double kMostVarianceM2 = kMaxSigmaM * kMaxSigmaM;
 
 class Reader {
@@ -209,7 +210,8 @@ class Reader {
     const std::string_view text = optional_field(column);
     if (text.empty() && !is_required(column)) return true;
     double parsed = 0.0;
-    const auto [end, status] = std::from_chars(begin_of(text), text.data() + text.size(), parsed);
+    const char* begin = csv::without_plus(text).data();
+    const auto [end, status] = std::from_chars(begin, text.data() + text.size(), parsed);
     if (end != text.data() + text.size() || status == std::errc::invalid_argument) {
       return fail(text.data(), in_column(column, text) + "not a number");
     }
@@ -240,12 +242,6 @@ class Reader {
     }
     return fail(text.data(),
                 in_column(column, text) + std::string(csv::why_no_whole<Integer>(text)));
-  }
-
-  /// from_chars knows no plus sign; people write it. A second sign is left for it to refuse.
-  static const char* begin_of(std::string_view text) {
-    const bool plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
-    return text.data() + (plus ? 1 : 0);
   }
 
   bool side(MaterialSide& value) {

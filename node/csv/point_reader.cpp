@@ -19,9 +19,6 @@
 namespace palpate::csv {
 namespace {
 
-// As node/intake/ingest_limits.h has them too.
-constexpr double kMinSigmaM = 1e-15;
-constexpr double kMaxLengthM = 1e3;  // of sigma and of tip radii
 // The first number of nanoseconds that a stamp (int64, contact.proto) does not hold: 2^63, about
 // 292 years.
 constexpr double kBeyondStampNs = 0x1p63;
@@ -39,7 +36,10 @@ class PointReader {
           mark == std::string_view::npos ? std::string_view() : line.substr(mark + 1);
       line = line.substr(0, mark);
       if (trimmed(line).empty()) {
-        if (!comment.empty() && !is_known_) comment_ = comment;
+        if (!comment.empty() && !is_known_) {
+          comment_ = comment;
+          comment_place_ = lines_.place();
+        }
         if (mark == std::string_view::npos) gap_ = true;
         if (is_known_ && is_names(comment)) begin_again();
         continue;
@@ -106,7 +106,7 @@ class PointReader {
       if (!columns_.is_enough()) return First::Neither;
       width_ = fields_.size();
       if (!columns_.twice.empty()) fail(line.data(), "column " + columns_.twice + " comes twice");
-      agree_on_unit(line);
+      agree_on_unit(lines_.place(), line);
       return First::Names;
     }
     width_ = fields_.size();
@@ -118,9 +118,9 @@ class PointReader {
     return First::Numbers;
   }
 
-  void agree_on_unit(std::string_view line) {
+  void agree_on_unit(const TextLines::Place& place, std::string_view names) {
     const std::string clash = options_.unit_m ? "" : clash_of_units(columns_);
-    if (!clash.empty()) fail(line.data(), clash);
+    if (!clash.empty() && error_.empty()) error_ = lines_.error(place, names.data(), clash);
   }
 
   bool is_names(std::string_view line) const { return !names_.empty() && trimmed(line) == names_; }
@@ -145,7 +145,7 @@ class PointReader {
         result_.notes.push_back("the last comment before the data names the columns: " +
                                 shown(trimmed(comment_)));
         separator_ = data_separator;
-        agree_on_unit(comment_);
+        agree_on_unit(comment_place_, comment_);
         return true;
       }
     }
@@ -301,7 +301,7 @@ class PointReader {
     if (std::exchange(units_may_follow_, false)) {
       if (const auto with_units = with_row_of_units(columns_, fields_)) {
         columns_ = *with_units;
-        agree_on_unit(line);
+        agree_on_unit(lines_.place(), line);
         return;
       }
     }
@@ -324,8 +324,8 @@ class PointReader {
       ++axes;
     }
     if (!field(Column::Sigma).empty() &&
-        (!length(Column::Sigma, "sigma", 0.0, kMaxLengthM, row.sample.sigma_m) ||
-         (row.sample.sigma_m > 0.0 && row.sample.sigma_m < kMinSigmaM &&
+        (!length(Column::Sigma, "sigma", 0.0, IngestLimits{}.max_sigma_m, row.sample.sigma_m) ||
+         (row.sample.sigma_m > 0.0 && row.sample.sigma_m < kMinSigma &&
           !fail(field(Column::Sigma).data(), "sigma " + shown(field(Column::Sigma)) +
                                                  ": must be 0 (not known) or >= 1e-15 m")))) {
       return;
@@ -333,8 +333,8 @@ class PointReader {
     row.context.tip_radius_m = options_.tip_radius_m;
     if (!field(Column::TipRadius).empty()) {
       const bool by_diameter = columns_.tips_by_diameter;
-      if (!length(Column::TipRadius, by_diameter ? "tip_diameter" : "tip_radius", 0.0, kMaxLengthM,
-                  row.context.tip_radius_m)) {
+      if (!length(Column::TipRadius, by_diameter ? "tip_diameter" : "tip_radius", 0.0,
+                  IngestLimits{}.max_tip_radius_m, row.context.tip_radius_m)) {
         return;
       }
       row.context.tip_radius_m *= by_diameter ? 0.5 : 1.0;
@@ -360,7 +360,8 @@ class PointReader {
   ContactFileOptions options_;
   PointTable result_;
   std::string error_;
-  std::string_view comment_;       ///< the last one before the data
+  std::string_view comment_;  ///< the last one before the data
+  TextLines::Place comment_place_;
   std::string without_names_;      ///< the error where no names follow the preface
   std::string_view names_;         ///< the line or comment that names the columns
   char told_separator_ = '\0';     ///< by the file itself

@@ -7,11 +7,12 @@
 #include <vector>
 
 #include "node/csv/contact_file.h"
+#include "node/wire/ingest_limits.h"
 
 namespace palpate::csv {
 
-/// What the node would refuse (node/intake/ingest.h) is not used offline either.
-inline constexpr double kMaxCoordinateM = 1e7;
+/// What the node would refuse is not used offline either. [m]
+inline constexpr double kMaxCoordinateM = IngestLimits{}.max_coordinate_m;
 
 /// Rows whose positions are still in space.
 struct PointTable {

@@ -1,12 +1,13 @@
 #include "node/csv/row_detail.h"
 
+#include "node/wire/ingest_limits.h"
+
 namespace palpate::csv {
 namespace {
 
-// The bounds of node/intake/ingest.h: what the node would refuse is not used offline either.
-constexpr double kLeastNormalSigmaRad = 1e-15;
-constexpr double kLeastVarianceM2 = 1e-30;
-constexpr double kMostVarianceM2 = 1e6;
+// What the node would refuse is not used offline either.
+constexpr double kLeastVarianceM2 = kMinSigma * kMinSigma;
+constexpr double kMostVarianceM2 = IngestLimits{}.max_sigma_m * IngestLimits{}.max_sigma_m;
 
 }  // namespace
 
@@ -28,7 +29,7 @@ DetailFault take_detail(const DetailNumbers& numbers, ContactRow& row) {
   const bool has_normal = !numbers.normal.isZero(0.0) || numbers.normal_sigma_rad != 0.0;
   if (has_normal && !is_unit(numbers.normal)) return DetailFault::NormalLength;
   const bool has_deviation =
-      numbers.normal_sigma_rad >= kLeastNormalSigmaRad && numbers.normal_sigma_rad <= kPi;
+      numbers.normal_sigma_rad >= kMinNormalSigma && numbers.normal_sigma_rad <= kPi;
   if (has_normal && !has_deviation) return DetailFault::NormalDeviation;
   const Eigen::Vector3d& covariance = numbers.covariance_m2;
   const bool has_covariance = !covariance.isZero(0.0);

@@ -53,10 +53,23 @@ class TextLines {
   std::string_view line() const { return line_; }
   std::size_t number() const { return number_; }
 
+  /// A line that is read already.
+  struct Place {
+    std::size_t number = 0;
+    std::string_view line;
+  };
+  Place place() const { return {number_, line_}; }
+
   /// "FILE:LINE:COLUMN: why"; `at` points into line().
   std::string error(const char* at, const std::string& why) const {
-    const std::ptrdiff_t column = at == nullptr || line_.data() == nullptr ? 0 : at - line_.data();
-    return std::string(name_) + ":" + std::to_string(std::max<std::size_t>(number_, 1)) + ":" +
+    return error(place(), at, why);
+  }
+
+  /// The same of an earlier line, which `at` points into.
+  std::string error(const Place& place, const char* at, const std::string& why) const {
+    const char* begin = place.line.data();
+    const std::ptrdiff_t column = at == nullptr || begin == nullptr ? 0 : at - begin;
+    return std::string(name_) + ":" + std::to_string(std::max<std::size_t>(place.number, 1)) + ":" +
            std::to_string(column + 1) + ": " + why;
   }
 
@@ -69,6 +82,12 @@ class TextLines {
   std::string_view line_;
 };
 
+/// from_chars knows no plus sign; people write it. A second sign is left for it to refuse.
+inline std::string_view without_plus(std::string_view text) {
+  const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+  return text.substr(has_plus ? 1 : 0);
+}
+
 /// The whole field as a number, infinities and NaN included; a plus sign may stand before it, a
 /// comma for the point where that is told, and Fortran's D for the E of an exponent.
 inline std::optional<double> number_of(std::string_view text, bool decimal_comma) {
@@ -78,7 +97,7 @@ inline std::optional<double> number_of(std::string_view text, bool decimal_comma
     rewritten[comma] = '.';
     text = rewritten;
   }
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  text = without_plus(text);
   double value = 0.0;
   auto parsed = std::from_chars(text.data(), text.data() + text.size(), value);
   const auto stopped_at = static_cast<std::size_t>(parsed.ptr - text.data());
@@ -100,7 +119,7 @@ inline std::optional<double> number_of(std::string_view text, bool decimal_comma
 /// numpy and pandas write columns of whole numbers so.
 template <typename Integer>
 std::optional<Integer> whole_of(std::string_view text) {
-  if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
+  text = without_plus(text);
   Integer value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status == std::errc() && end == text.data() + text.size()) return value;

@@ -8,7 +8,7 @@
 #include <vector>
 #include <zmq.hpp>
 
-#include "node/intake/ingest_limits.h"
+#include "node/wire/ingest_limits.h"
 #include "node/wire/socket.h"
 
 namespace palpate::gateway {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
-#include "node/intake/ingest_limits.h"
+#include "node/wire/ingest_limits.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/node_status.pb.h"
 

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "node/intake/ingest_limits.h"
+#include "node/wire/ingest_limits.h"
 
 namespace palpate {
 namespace {

@@ -241,6 +241,10 @@ class Formats(unittest.TestCase):
                 self.assertNotEqual(code, 0, (names, command))
                 self.assertIn("the coordinates have different units", out + err)
             self.check(names + rows, "--unit", "mm")
+        # The names may be a comment, lines before the data.
+        path.write_text("# a part\n  # x_mm y_um\n\n1 2\n2 3\n")
+        _, _, err = run(TOOL, "fit", path)
+        self.assertIn(f"{path}:2:4: the coordinates have different units", err)
         # A unit that one column names holds for the other, and the same unit may be called twice.
         for names, told in (("x_mm,y\n", "column y names no unit: taken as mm, as x is (else --unit"), ("x_mm,y [mm]\n", "")):
             self.check(names + rows)
