@@ -1,12 +1,15 @@
 """palpate record, check and replay: beside a running node, under floods, with keys, with damage."""
 import os
+import pathlib
 import signal
 import subprocess
+import tempfile
 import time
 import unittest
 
 import zmq
 from bus import Bus, Probe, memory_kb, stop, wait_for
+from palpate.v1 import contact_pb2
 from programs import SIM, SOURCE, TOOL, run
 
 SCENE = SOURCE / "sim/scenes/ellipse.textproto"
@@ -134,6 +137,43 @@ class Replays(unittest.TestCase):
             code, _, err = self.replay(bus, SOURCE / "tests/data/hostile/stamps_ub.rec")
             self.assertIn("messages", err)
             self.assertEqual(code, 0, err)
+
+    def replayed(self, file, *arguments):
+        """The batches that a recognizer gets."""
+        with Bus() as bus:
+            socket = bus.context.socket(zmq.SUB)
+            socket.setsockopt(zmq.LINGER, 0)
+            socket.setsockopt_string(zmq.SUBSCRIBE, "contact/")
+            socket.bind(bus.contacts)
+            replay = bus.start(TOOL, "replay", file, "--contacts", bus.contacts, *arguments, stderr=subprocess.PIPE)
+            while replay.poll() is None:
+                socket.get(zmq.EVENTS)  # libzmq's reader accepts and subscribes while it is asked for something
+                time.sleep(0.01)
+            self.assertEqual(replay.returncode, 0, replay.communicate()[1])
+            batches = []
+            while socket.poll(200):
+                batches.append(contact_pb2.ContactBatch.FromString(socket.recv_multipart()[1]))
+            return batches
+
+    def test_samples_without_a_stamp_stay_without_one_and_in_their_place(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "stamped.csv"
+            start = 1_700_000_000_000_000_000
+            stamps = [*range(start, start + 6_000_000, 1_000_000)]
+            stamps[1] = stamps[3] = ""  # 3: the last one of a message
+            path.write_text("x_m,y_m,stamp_ns\n" + "".join(f"{i},0,{stamp}\n" for i, stamp in enumerate(stamps)))
+            for pace in ("--speed", "1"), ("--fast",):
+                batches = self.replayed(path, "--batch", "2", *pace)
+                samples = [sample for batch in batches for sample in batch.samples]
+                self.assertEqual([sample.x_m for sample in samples], [0, 1, 2, 3, 4, 5])
+                self.assertEqual([i for i, sample in enumerate(samples) if sample.stamp_ns == 0], [1, 3])
+                self.assertTrue(all(sample.stamp_ns >= start for sample in samples if sample.stamp_ns))
+            # Times may count from 0, which is one of them.
+            path.write_text("x_m,y_m,time_s\n" + "".join(f"{i},0,{0.001 * i}\n" for i in range(4)))
+            stamps = [sample.stamp_ns for batch in self.replayed(path) for sample in batch.samples]
+            self.assertEqual(len(stamps), 4)
+            for before, after in zip(stamps, stamps[1:]):
+                self.assertLessEqual(abs(after - before - 1_000_000), 1000)  # rounded as a double of nanoseconds
 
     def test_a_speed_that_is_no_number(self):
         for value in ("nan", "inf", "0", "-1", "fast"):

@@ -116,6 +116,45 @@ class RecordedContacts {
   std::uint64_t malformed_ = 0;
 };
 
+/// The times of a table's samples, of which some may have none.
+class SampleTimes {
+ public:
+  SampleTimes(const ContactTable& table, double rate_hz) : period_ns_(1e9 / rate_hz) {
+    for (const ContactRow& row : table.rows) {
+      const std::int64_t stamp_ns = row.sample.stamp_ns;
+      if (stamp_ns > 0 && (!is_stamped_ || stamp_ns < first_ns_)) first_ns_ = stamp_ns;
+      is_stamped_ |= stamp_ns > 0;
+    }
+  }
+
+  /// A sample's stamp; 0 = not known. In a file without stamps the samples of a probe follow one
+  /// another at the rate.
+  std::int64_t stamp_ns(const std::string& probe, const ContactSample& sample) {
+    // No Unix time of a measurement lies before 2001, so such times count from a start of their
+    // own.
+    constexpr std::int64_t kUnixNs = 1'000'000'000'000'000'000;
+    auto [found, is_first] = latest_ns_.try_emplace(probe, is_stamped_ ? first_ns_ : 0);
+    if (!is_stamped_) {
+      return found->second = std::llround(period_ns_ * static_cast<double>(++taken_[probe]));
+    }
+    std::int64_t stamp = sample.stamp_ns;
+    // At the start itself a sample has a time: not the 0 that says that none is known.
+    if (stamp == 0 && is_first && first_ns_ < kUnixNs) stamp = 1;
+    if (stamp != 0) found->second = stamp;
+    return stamp;
+  }
+
+  /// When the latest sample of the probe is due; one without a stamp, with the one before.
+  std::int64_t due_ns(const std::string& probe) const { return latest_ns_.at(probe); }
+
+ private:
+  double period_ns_;
+  bool is_stamped_ = false;
+  std::int64_t first_ns_ = 0;  ///< the least of the stamps
+  std::map<std::string, std::int64_t> latest_ns_;
+  std::map<std::string, std::int64_t> taken_;
+};
+
 /// Batches of consecutive samples of one patch, due with their last one: by its stamp, or after so
 /// many sample periods where the file has no stamps.
 Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
@@ -126,12 +165,8 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   }
   const ContactTable* const table = &file.value->table;
   for (const std::string& note : file.value->notes) complain(command.file + ": " + note, kDone);
-  // Times may count from 0.
-  const bool stamped = std::any_of(table->rows.begin(), table->rows.end(),
-                                   [](const ContactRow& row) { return row.sample.stamp_ns > 0; });
-  const double period_ns = 1e9 / command.rate_hz;
+  SampleTimes times(*table, command.rate_hz);
   std::vector<TimedMessage> messages;
-  std::map<std::string, std::int64_t> taken;  // samples, by probe
   for (const ContactGroup& group : contact_groups(command.file, *table)) {
     for (const ContactRun& run : group.runs) {
       const std::string& probe = group.probes[run.context.probe];
@@ -151,9 +186,8 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
         to.set_y_m(from.position_m.y());
         to.set_sigma_m(from.sigma_m > 0.0 ? from.sigma_m : command.sigma_m);
         if (!run.details.empty()) to_wire(run.details[i], to);
-        to.set_stamp_ns(stamped ? from.stamp_ns
-                                : std::llround(period_ns * static_cast<double>(++taken[probe])));
-        messages.back().due_ns = to.stamp_ns();
+        to.set_stamp_ns(times.stamp_ns(probe, from));
+        messages.back().due_ns = times.due_ns(probe);
       }
     }
   }
@@ -299,6 +333,7 @@ int run(const ReplayCommand& command) {
       break;
     }
     for (v1::ContactSample& sample : *message.batch.mutable_samples()) {
+      if (sample.stamp_ns() == 0) continue;  // not known, and no replay makes it known
       sample.set_stamp_ns(command.fast ? unix_time_ns() : pace->stamp_ns(sample.stamp_ns()));
     }
     if (!command.keep_objects) {
