@@ -155,7 +155,9 @@ class Curve(unittest.TestCase):
                                 (TOOL, "replay", points, "--contacts", bus.contacts, "--wait", "30"),
                                 (TOOL, "watch", "--results", bus.results, "--timeout", "30"),
                                 (TOOL, "hz", "--results", bus.results, "--seconds", "30"),
-                                (TOOL, "list", "--results", bus.results, "--seconds", "30")):
+                                (TOOL, "list", "--results", bus.results, "--seconds", "30"),
+                                (TOOL, "record", bus.folder / f"{len(keys)}.recording", "--results", bus.results,
+                                 "--seconds", "30")):
                     begin = time.monotonic()
                     code, out, err = run(*program, *keys)
                     took = time.monotonic() - begin

@@ -47,6 +47,7 @@ int ListeningPlace::open(const Endpoint& endpoint, const SocketSettings& setting
   patient.receive_high_water_mark = kMessagesWaiting;
   socket_ = make_socket(context_, zmq::socket_type::sub, patient);
   socket_->set(zmq::sockopt::subscribe, "");
+  if (!zap_) handshakes_.emplace(context_, *socket_);
   if (const std::string error = attach(*socket_, endpoint, &lock_); !error.empty()) {
     return complain(error + (endpoint.bind ? " (is the recognizer running? stop it: this takes its "
                                              "place)"
@@ -63,11 +64,13 @@ void ListeningPlace::listen(int stop_fd, std::optional<std::chrono::steady_clock
   constexpr int kMostAtOnce = 1000;
   std::vector<zmq::pollitem_t> items{{socket_->handle(), 0, ZMQ_POLLIN, 0}};
   if (zap_) items.push_back({zap_->socket().handle(), 0, ZMQ_POLLIN, 0});
+  if (handshakes_) items.push_back({handshakes_->events().handle(), 0, ZMQ_POLLIN, 0});
   TwoFrames frames;
   bool wants_more = true;
   while (wants_more && !stop_requested(stop_fd) && (!end || Clock::now() < *end)) {
     poll(items, static_cast<int>(kStep.count()));
     if (zap_) zap_->serve();
+    if (!refusal().empty()) return;
     const Clock::time_point turn = Clock::now() + kStep;
     drain(*socket_, frames, kMostAtOnce, end ? std::min(*end, turn) : turn,
           [&](const TwoFrames& message) { wants_more = wants_more && take(message); });

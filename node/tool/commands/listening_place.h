@@ -9,6 +9,7 @@
 
 #include "node/security/node_keys.h"
 #include "node/tool/commands/command.h"
+#include "node/wire/handshake_watch.h"
 #include "node/wire/path_lock.h"
 #include "node/wire/socket.h"
 
@@ -34,8 +35,8 @@ class ListeningPlace {
   /// Connects as a client of the recognizer. Returns kDone, or has complained.
   int open_as_client(const std::string& endpoint, const std::optional<CurveClient>& curve);
 
-  /// Gives every message to take() until that returns false, a stop is asked for or it is `end`;
-  /// nothing that comes, and however much, delays the end.
+  /// Gives every message to take() until that returns false, a stop is asked for, it is `end` or
+  /// the recognizer refuses this client; nothing that comes, and however much, delays the end.
   void listen(int stop_fd, std::optional<std::chrono::steady_clock::time_point> end,
               const std::function<bool(const TwoFrames&)>& take);
 
@@ -43,6 +44,9 @@ class ListeningPlace {
   Sender sender_of(const zmq::message_t& frame) const {
     return zap_ ? zap_->sender_of(key_of(frame)) : Sender();
   }
+
+  /// Why the recognizer refuses this client, worded to follow its address; empty if it does not.
+  std::string refusal() { return handshakes_ ? handshakes_->refusal() : std::string(); }
 
   std::uint64_t denied_count() const { return zap_ ? zap_->denied_count() : 0; }
 
@@ -53,6 +57,7 @@ class ListeningPlace {
   std::optional<ZapHandler> zap_;
   PathLock lock_;
   std::optional<zmq::socket_t> socket_;
+  std::optional<HandshakeWatch> handshakes_;  ///< of a client
 };
 
 }  // namespace palpate

@@ -98,12 +98,16 @@ int run(const RecordCommand& command) {
   if (!good) {
     return complain(command.file + ": cannot be written", kFailed);
   }
+  const std::string& endpoint =
+      command.contacts.empty() ? command.connection.endpoint : command.contacts;
   std::cerr << command.file << ": " << counted(recorded, "message");
   if (recorded == 0) {
-    std::cerr << ": nothing was heard on "
-              << (command.contacts.empty() ? command.connection.endpoint : command.contacts);
+    std::cerr << ": nothing was heard on " << endpoint;
   }
   std::cerr << "\n";
+  if (const std::string why = place.refusal(); !why.empty()) {
+    return complain("the recognizer at " + endpoint + " " + why, kFailed);
+  }
   return kDone;
 }
 
