@@ -85,6 +85,7 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
   const bool is_new_patch = probe.patches.empty() || probe.patches.back().number != message.patch ||
                             probe.patches.back().object != message.object;
   if (is_new_patch) {
+    ++probe.patch_count;
     if (probe.patches.size() == kMostPatches) {
       probe.patches.erase(probe.patches.begin());
     }
@@ -127,7 +128,7 @@ std::vector<Finding> StreamCheck::findings() const {
     };
     add(Severity::Note,
         counted(probe.messages, "message") + ", " + counted(probe.samples, "sample") + ", " +
-            counted(probe.patches.size(), "patch", "patches"),
+            counted(probe.patch_count, "patch", "patches"),
         "");
     if (probe.without_epoch > 0) {
       add(Severity::Error, counted(probe.without_epoch, "message") + " without header.epoch",

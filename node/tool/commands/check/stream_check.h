@@ -39,7 +39,8 @@ class StreamCheck {
     bool stamps_differ = false;
     std::int64_t last_stamp_ns = 0;
     std::int64_t largest_delay_ns = 0;
-    std::vector<CheckedPatch> patches;
+    std::uint64_t patch_count = 0;
+    std::vector<CheckedPatch> patches;  ///< the latest
   };
 
   ContactDecoder decoder_;

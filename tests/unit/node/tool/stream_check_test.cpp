@@ -85,6 +85,20 @@ TEST(StreamCheck, APatchInNoOrderIsNotFit) {
   EXPECT_TRUE(has(findings, Severity::Error, "to and fro"));
 }
 
+TEST(StreamCheck, AllPatchesOfALongStreamAreCounted) {
+  StreamCheck check;
+  constexpr std::uint32_t kPatches = 300;  // more than are kept for judgement
+  for (std::uint32_t number = 0; number < kPatches; ++number) {
+    v1::ContactBatch batch;
+    batch.mutable_header()->set_epoch(5);
+    batch.mutable_header()->set_seq(number);
+    batch.set_patch(number);
+    batch.add_samples()->set_x_m(1e-3 * number);
+    check.take(2, "contact/p/", batch.SerializeAsString(), kNow);
+  }
+  EXPECT_TRUE(has(check.findings(), Severity::Note, "300 messages, 300 samples, 300 patches"));
+}
+
 TEST(StreamCheck, AGoodStreamHasNotesOnly) {
   for (const Finding& finding : findings_of([](std::size_t, v1::ContactBatch&) {})) {
     EXPECT_EQ(finding.severity, Severity::Note) << finding.what;
