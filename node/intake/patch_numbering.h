@@ -1,6 +1,8 @@
 // Splits a probe's patches into runs of unbroken contact.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -13,18 +15,18 @@ namespace palpate {
 
 /// A run ends where the patch number changes, where the probe or the object starts anew, and where
 /// lost messages leave a gap in the arc. The recognizer gets its own number for each run; the
-/// probe's patch number of each is kept.
+/// probe's patch number of each is kept for as long as the recognizer may hold samples of the run.
 class PatchNumbering {
  public:
   /// Number of the run that these samples continue or begin. `break_spacings`: after lost messages,
   /// a gap larger than this many sample spacings ends the run.
   std::uint32_t run_of(std::uint32_t wire_patch, bool samples_are_missing, double break_spacings,
                        std::span<const ContactSample> samples) {
-    const bool joins = open_ && wire_patch == wire_patches_.back() &&
+    const bool joins = open_ && wire_patch == latest_.wire_patch &&
                        !(samples_are_missing && is_broken(break_spacings, samples));
     if (!joins) begin(wire_patch);
     follow(samples, samples_are_missing);
-    return first_run_ + static_cast<std::uint32_t>(wire_patches_.size()) - 1;
+    return latest_.number;
   }
 
   /// Makes the next samples begin a new run (new epoch or new object).
@@ -32,25 +34,46 @@ class PatchNumbering {
 
   /// The probe's patch number of a run; nullopt if the run is too old.
   std::optional<std::uint32_t> wire_patch(std::uint32_t run) const {
-    const std::uint32_t index = run - first_run_;
-    if (index >= wire_patches_.size()) return std::nullopt;
-    return wire_patches_[index];
+    for (const std::deque<Run>& kept : runs_) {
+      const auto found = std::lower_bound(
+          kept.begin(), kept.end(), run,
+          [](const Run& each, std::uint32_t number) { return each.number < number; });
+      if (found != kept.end() && found->number == run) return found->wire_patch;
+    }
+    return std::nullopt;
   }
 
  private:
-  // Twice what one recognition holds: most_patches strokes (at most 1,024) plus 1,024 single
-  // touches.
-  static constexpr std::size_t kRemembered = 4096;
+  struct Run {
+    std::uint32_t number = 0;
+    std::uint32_t wire_patch = 0;
+  };
+
+  // The recognizer forgets strokes and single touches each by their own number, so any number of
+  // touches may come while a stroke stays in use. Samples that all lie in one place are a touch to
+  // a search and a stroke to a given class.
+  enum Kind : std::size_t { kTouch, kStill, kStroke, kKinds };
+
+  // Runs remembered of each kind: twice what one recognition holds (most_patches strokes, at most
+  // 1,024, and 1,024 single touches).
+  static constexpr std::size_t kRemembered = 2048;
 
   void begin(std::uint32_t wire_patch) {
-    wire_patches_.push_back(wire_patch);
-    if (wire_patches_.size() > kRemembered) {
-      wire_patches_.pop_front();
-      ++first_run_;
-    }
+    // Only now the kind of the run before is settled.
+    if (runs_[kind_].size() > kRemembered) runs_[kind_].pop_front();
+    latest_ = {next_number_++, wire_patch};
+    kind_ = kTouch;
+    runs_[kind_].push_back(latest_);
     open_ = true;
     has_last_ = false;
     spacing_ = 0.0;
+  }
+
+  void become(Kind kind) {
+    if (kind <= kind_) return;
+    runs_[kind_].pop_back();
+    kind_ = kind;
+    runs_[kind_].push_back(latest_);
   }
 
   // A single sample gives no spacing, so nothing shows that the arc is unbroken.
@@ -64,6 +87,7 @@ class PatchNumbering {
   void follow(std::span<const ContactSample> samples, bool after_hole) {
     constexpr double kMemory = 16.0;
     for (const ContactSample& sample : samples) {
+      if (has_last_) become(sample.position_m == last_ ? kStill : kStroke);
       if (has_last_ && !after_hole) {
         const double step = (sample.position_m - last_).norm();
         spacing_ = spacing_ == 0.0 ? step : spacing_ + (step - spacing_) / kMemory;
@@ -74,8 +98,10 @@ class PatchNumbering {
     }
   }
 
-  std::deque<std::uint32_t> wire_patches_;  // of the latest runs
-  std::uint32_t first_run_ = 0;             // number of wire_patches_.front()
+  std::array<std::deque<Run>, kKinds> runs_;  // the latest of each kind, by increasing number
+  Run latest_;
+  Kind kind_ = kTouch;  // of the latest run, which is the last of its kind
+  std::uint32_t next_number_ = 0;
   bool open_ = false;
   bool has_last_ = false;
   Vec2 last_ = Vec2::Zero();

@@ -54,7 +54,7 @@ TEST(PatchNumbering, AnEndedRunIsNotContinued) {
 TEST(PatchNumbering, OldRunsAreForgottenAndNewOnesKept) {
   PatchNumbering numbering;
   constexpr std::uint32_t kMany = 10000;
-  constexpr std::uint32_t kOfOneRecognition = 2048;  // strokes and touches, 1,024 of each
+  constexpr std::uint32_t kOfOneRecognition = 1024;  // touches
   std::uint32_t run = 0;
   for (std::uint32_t patch = 0; patch < kMany; ++patch) {
     run = numbering.run_of(patch, false, kBreak, samples_from(0.0, 1));
@@ -63,6 +63,26 @@ TEST(PatchNumbering, OldRunsAreForgottenAndNewOnesKept) {
   EXPECT_EQ(numbering.wire_patch(run - kOfOneRecognition), kMany - 1 - kOfOneRecognition);
   EXPECT_FALSE(numbering.wire_patch(run - kMany / 2));
   EXPECT_FALSE(numbering.wire_patch(run + 1));
+}
+
+TEST(PatchNumbering, StrokesAndTouchesAreForgottenEachByTheirOwnNumber) {
+  constexpr std::uint32_t kMany = 10000;
+  PatchNumbering numbering;
+  const std::uint32_t stroke = numbering.run_of(77, false, kBreak, samples_from(0.0));
+  const std::uint32_t still = numbering.run_of(78, false, kBreak, samples_from(1.0, 1));
+  EXPECT_EQ(numbering.run_of(78, false, kBreak, samples_from(1.0, 1)), still);
+  std::uint32_t touch = 0;
+  for (std::uint32_t patch = 0; patch < kMany; ++patch) {
+    touch = numbering.run_of(100 + patch, false, kBreak, samples_from(0.0, 1));
+  }
+  EXPECT_EQ(numbering.wire_patch(stroke), 77U);
+  EXPECT_EQ(numbering.wire_patch(still), 78U);
+  for (std::uint32_t patch = 0; patch < kMany; ++patch) {
+    numbering.run_of(patch, false, kBreak, samples_from(0.0, 2));
+  }
+  EXPECT_EQ(numbering.wire_patch(touch), 100 + kMany - 1);
+  EXPECT_EQ(numbering.wire_patch(still), 78U);
+  EXPECT_FALSE(numbering.wire_patch(stroke));
 }
 
 }  // namespace
