@@ -152,7 +152,8 @@ void Node::run(int stop_fd, int reload_fd) {
     if (zap_ && items.back().revents != 0) zap_->serve();
     give_out_work(now_steady());
     if (now >= next_tick_) {
-      tick(now);
+      // What has come since the poll is not from the future.
+      tick(now_steady());
       // Not urgent: once per tick is often enough.
       if (reload_fd >= 0 && reload_requested(reload_fd)) {
         reload_clients();

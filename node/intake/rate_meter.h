@@ -1,6 +1,7 @@
 // Events per second, averaged over the last second.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -14,7 +15,7 @@ class RateMeter {
 
   void add(Time now, std::uint64_t count) {
     advance(now);
-    buckets_[current_ % kBuckets] += count;
+    buckets_[place_of(current_)] += count;
   }
 
   /// Mean over the last second; of the current tenth only the elapsed part counts.
@@ -22,7 +23,9 @@ class RateMeter {
     advance(now);
     std::uint64_t sum = 0;
     for (const std::uint64_t bucket : buckets_) sum += bucket;
-    const std::chrono::duration<double> partial = now.time_since_epoch() - current_ * kBucket;
+    // A time before the latest event is that of the event's tenth.
+    const std::chrono::duration<double> partial =
+        std::max(now.time_since_epoch() - current_ * kBucket, Time::duration(0));
     const std::chrono::duration<double> full = (kBuckets - 1) * kBucket;
     return static_cast<double>(sum) / (full + partial).count();
   }
@@ -33,15 +36,19 @@ class RateMeter {
 
   void advance(Time now) {
     const std::int64_t index = now.time_since_epoch() / kBucket;
-    if (index - static_cast<std::int64_t>(current_) >= static_cast<std::int64_t>(kBuckets)) {
+    if (index - current_ >= static_cast<std::int64_t>(kBuckets)) {
       buckets_.fill(0);
-      current_ = static_cast<std::size_t>(index);
+      current_ = index;
     }
-    while (static_cast<std::int64_t>(current_) < index) buckets_[++current_ % kBuckets] = 0;
+    while (current_ < index) buckets_[place_of(++current_)] = 0;
+  }
+
+  static std::size_t place_of(std::int64_t bucket) {
+    return static_cast<std::size_t>(bucket) % kBuckets;
   }
 
   std::array<std::uint64_t, kBuckets> buckets_{};
-  std::size_t current_ = 0;
+  std::int64_t current_ = 0;  // bucket being filled, counted from the clock's start
 };
 
 }  // namespace palpate

@@ -36,12 +36,11 @@ void write_probe(const v1::ProbeStatus& probe, double status_age_s, JsonText& js
   json.member("alive", probe.alive());
   json.member("samplesPerS", probe.sample_rate_hz(), 4);
   json.member("batchesPerS", probe.message_rate_hz(), 4);
-  json.member("ageS", std::max(probe.age_s(), 0.0) + status_age_s, 4);
+  json.member("ageS", probe.age_s() + status_age_s, 4);
   json.member("gaps", probe.gaps());
   json.member("missing", probe.missing());
   json.member("restarts", probe.restarts());
   json.member("rejected", probe.rejected());
-  json.member("latencyMs", 1e-6 * static_cast<double>(probe.latency_ns()), 4);
   json.end_object();
 }
 

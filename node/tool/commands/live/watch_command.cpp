@@ -154,8 +154,7 @@ class TextLines : public WatchOutput {
         "probe %s: %s, %.0f samples/s, heard %.2f s ago, %llu gaps (%llu lost), %llu rejected, "
         "%llu restarts",
         printable(probe.probe()).c_str(), probe.alive() ? "alive" : "SILENT",
-        probe.sample_rate_hz(), std::max(probe.age_s(), 0.0),
-        static_cast<unsigned long long>(probe.gaps()),
+        probe.sample_rate_hz(), probe.age_s(), static_cast<unsigned long long>(probe.gaps()),
         static_cast<unsigned long long>(probe.missing()),
         static_cast<unsigned long long>(probe.rejected()),
         static_cast<unsigned long long>(probe.restarts()));

@@ -36,8 +36,7 @@
  *   runs: {run: number, probe: string, patch: number, tipRadius: number, points: number[]}[]}} Samples */
 
 /** @typedef {{name: string, group: string, alive: boolean, samplesPerS: number, batchesPerS: number,
- *   ageS: number, gaps: number, missing: number, restarts: number, rejected: number,
- *   latencyMs: number}} Probe */
+ *   ageS: number, gaps: number, missing: number, restarts: number, rejected: number}} Probe */
 
 /** @typedef {{name: string, version: string, silentS: number, uptimeS: number, received: number,
  *   accepted: number, gaps: number, missing: number, computeP50Ms: number, computeP99Ms: number,
