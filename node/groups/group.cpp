@@ -38,9 +38,11 @@ v1::RejectReason Group::judge(const ContactMessage& message, const Probe* probe,
   return v1::REJECT_REASON_UNSPECIFIED;
 }
 
-void Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
+std::size_t Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
   const bool begins_object = members_.empty() || message.object != object_;
+  std::size_t superseded = 0;
   if (begins_object) {
+    superseded = waiting_.sample_count();
     waiting_.clear();
     members_.clear();
     frame_ = message.frame;
@@ -55,6 +57,12 @@ void Group::take(const ContactMessage& message, Continuity continuity, SteadyTim
   }
   last_taken_ = now;
   waiting_.push(message, continuity, begins_object);
+  return superseded;
+}
+
+bool Group::is_touched_by_others_than(std::string_view probe) const {
+  return std::any_of(members_.begin(), members_.end(),
+                     [&](const Member& member) { return member.probe != probe; });
 }
 
 std::shared_ptr<GroupRecognizer> Group::begin_work() {

@@ -45,8 +45,8 @@ class Group {
   v1::RejectReason judge(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
 
   /// Accepts a message that judge() has passed and queues it. If a new object begins, the waiting
-  /// messages of the old one are dropped.
-  void take(const ContactMessage& message, Continuity continuity, SteadyTime now);
+  /// messages of the old one are dropped. Returns how many samples these had.
+  std::size_t take(const ContactMessage& message, Continuity continuity, SteadyTime now);
 
   /// Moves all waiting messages to the recognizer and returns it for run(). Until end_work() it
   /// belongs to the thread that runs it.
@@ -70,9 +70,13 @@ class Group {
   /// Memory of the messages that wait or are being processed. [bytes]
   std::size_t queued_bytes() const { return waiting_.bytes() + in_work_bytes_; }
 
+  std::size_t waiting_samples() const { return waiting_.sample_count(); }
+
+  /// Whether other probes than this one have touched the present object.
+  bool is_touched_by_others_than(std::string_view probe) const;
+
   const std::string& name() const { return name_; }
   std::uint64_t object() const { return object_; }
-  std::size_t probe_count() const { return members_.size(); }
   SteadyTime last_taken() const { return last_taken_; }
 
  private:

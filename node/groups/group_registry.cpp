@@ -13,7 +13,7 @@ Group* GroupRegistry::find(std::string_view name) {
 std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
     std::string_view probe, SteadyTime now) const {
   auto idle = groups_.end();  // oldest of all
-  auto own = groups_.end();   // oldest of those that only this probe touches
+  auto own = groups_.end();   // oldest of those that this probe has opened and touches alone
   std::size_t opened = 0;     // opened by this probe
   const auto older = [&](Entries::const_iterator entry, Entries::const_iterator than) {
     return than == groups_.end() ||
@@ -24,7 +24,8 @@ std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
     if (is_own) ++opened;
     if (entry->second.group.is_in_work()) continue;  // cannot be evicted now
     if (older(entry, idle)) idle = entry;
-    if (is_own && entry->second.group.probe_count() <= 1 && older(entry, own)) own = entry;
+    const bool is_shared = entry->second.group.is_touched_by_others_than(probe);
+    if (is_own && !is_shared && older(entry, own)) own = entry;
   }
   if (opened >= bounds_.max_groups_per_probe) {
     return own == groups_.end() ? std::nullopt : std::optional(own);
@@ -44,6 +45,7 @@ Group& GroupRegistry::add(std::string_view name, std::string_view probe, SteadyT
   if (*place != groups_.end()) {
     evicted = (*place)->first;
     queued_bytes_ -= (*place)->second.group.queued_bytes();
+    superseded_samples_ += (*place)->second.group.waiting_samples();
     groups_.erase(*place);
     ++evicted_count_;
   }
@@ -57,7 +59,7 @@ Group& GroupRegistry::add(std::string_view name, std::string_view probe, SteadyT
 void GroupRegistry::take(Group& group, const ContactMessage& message, Continuity continuity,
                          SteadyTime now) {
   queued_bytes_ -= group.queued_bytes();
-  group.take(message, continuity, now);
+  superseded_samples_ += group.take(message, continuity, now);
   queued_bytes_ += group.queued_bytes();
   Entry& entry = groups_.find(group.name())->second;
   if (entry.waiting) return;

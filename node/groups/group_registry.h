@@ -71,6 +71,9 @@ class GroupRegistry {
 
   std::size_t size() const { return groups_.size(); }
   std::uint64_t evicted_count() const { return evicted_count_; }
+  /// Samples of accepted messages that have waited in vain: for an object that another one has
+  /// followed, or in a group that was evicted.
+  std::uint64_t superseded_samples() const { return superseded_samples_; }
 
  private:
   struct Entry {
@@ -93,6 +96,7 @@ class GroupRegistry {
   std::int64_t served_floor_ns_ = 0;
   std::size_t queued_bytes_ = 0;
   std::uint64_t evicted_count_ = 0;
+  std::uint64_t superseded_samples_ = 0;
 };
 
 }  // namespace palpate

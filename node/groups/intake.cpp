@@ -15,9 +15,11 @@ Continuity continuity_of(SequenceEvent event, bool same_group) {
   return Continuity::Anew;
 }
 
-// A sender may set any stamp; if the difference overflows, the latency is 0.
+// A sender may set any stamp; if the difference overflows, the latency is 0. So it is without a
+// stamp.
 std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
   std::int64_t latency = 0;
+  if (sent_ns == 0) return latency;
   return __builtin_sub_overflow(received_ns, sent_ns, &latency) ? 0 : latency;
 }
 

@@ -80,6 +80,7 @@ class ContactQueue {
   }
 
   bool empty() const { return messages_.empty(); }
+  std::size_t sample_count() const { return samples_.size(); }
   std::size_t bytes() const { return bytes_; }
 
  private:

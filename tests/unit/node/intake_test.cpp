@@ -132,6 +132,48 @@ TEST_F(IntakeTest, AStampThatCannotBeSubtractedIsShownAsZero) {
   EXPECT_EQ(intake_.probes().find("p")->latency_ns, 0);
 }
 
+TEST_F(IntakeTest, WithoutAStampThereIsNoLatency) {
+  constexpr std::int64_t kNow = 1'700'000'000'000'000'000;
+  v1::ContactBatch batch = line_batch("p", 1, 0);
+  batch.mutable_header()->set_stamp_ns(kNow - 5);
+  EXPECT_EQ(intake_.take(2, contact_topic("p"), batch.SerializeAsString(), now_, kNow), kTaken);
+  EXPECT_EQ(intake_.probes().find("p")->latency_ns, 5);
+  batch.mutable_header()->set_seq(1);
+  batch.mutable_header()->set_stamp_ns(0);
+  EXPECT_EQ(intake_.take(2, contact_topic("p"), batch.SerializeAsString(), now_, kNow), kTaken);
+  EXPECT_EQ(intake_.probes().find("p")->latency_ns, 0);
+}
+
+TEST_F(IntakeTest, SamplesThatWaitInVainAreCounted) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 1;
+  Intake intake(options);
+  give(intake, "p", in_group("cup", 1, line_batch("p", 1, 0, 50)));
+  intake.groups().begin_work(*intake.groups().find("cup"))->contacts.clear();
+  intake.groups().end_work(*intake.groups().find("cup"));
+  EXPECT_EQ(intake.groups().superseded_samples(), 0U);
+  give(intake, "p", in_group("cup", 1, line_batch("p", 1, 1, 7)));
+  give(intake, "p", in_group("cup", 2, line_batch("p", 1, 2, 30)));
+  EXPECT_EQ(intake.groups().superseded_samples(), 7U);
+  give(intake, "p", in_group("plate", 3, line_batch("p", 1, 3, 20)));
+  EXPECT_EQ(intake.groups().find("cup"), nullptr);
+  EXPECT_EQ(intake.groups().superseded_samples(), 37U);
+}
+
+TEST_F(IntakeTest, AGroupThatAnotherProbeHasTakenOverIsNotGivenUp) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 2;
+  Intake intake(options);
+  give(intake, "opener", in_group("cup", 1, line_batch("opener", 1, 0)));
+  give(intake, "heir", in_group("plate", 1, line_batch("heir", 1, 0)));
+  now_ += seconds(60);
+  give(intake, "heir", in_group("cup", 2, line_batch("heir", 1, 1)));
+  give(intake, "opener", in_group("dish", 1, line_batch("opener", 1, 1)));
+  give(intake, "opener", in_group("bowl", 1, line_batch("opener", 1, 2)));
+  EXPECT_NE(intake.groups().find("cup"), nullptr);
+  EXPECT_EQ(intake.groups().find("dish"), nullptr);
+}
+
 TEST_F(IntakeTest, ANewObjectForgetsTheOld) {
   give("p", in_group("cup", 1, line_batch("p", 1, 0, 50)));
   EXPECT_EQ(recognized_samples("cup"), 50U);

@@ -27,6 +27,14 @@ TEST(RateMeter, ASteadyStreamIsMeasuredRight) {
   EXPECT_EQ(meter.per_second(now), 0.0);
 }
 
+TEST(RateMeter, ATimeBeforeTheLatestEventIsNoRateOfZero) {
+  RateMeter meter;
+  const SteadyTime now{seconds(50)};
+  for (int i = 0; i < 10; ++i) meter.add(now + milliseconds(100 * i + 10), 100);
+  // The latest event is in the next tenth of a second.
+  EXPECT_NEAR(meter.per_second(now + milliseconds(895)), 1000.0, 1e-9);
+}
+
 TEST(ComputeTimes, QuantilesOfALongPeriod) {
   ComputeTimes times;
   EXPECT_EQ(times.quantile(0.5), 0);
@@ -47,7 +55,9 @@ TEST(Status, SaysWhatHappened) {
   times.add(1000);
   SteadyTime now{seconds(100)};
   for (const std::uint64_t seq : {0, 1, 5}) {
-    intake.take(2, contact_topic("p"), line_batch("p", 9, seq).SerializeAsString(), now, 77);
+    v1::ContactBatch batch = line_batch("p", 9, seq);
+    batch.mutable_header()->set_stamp_ns(23);
+    intake.take(2, contact_topic("p"), batch.SerializeAsString(), now, 100);
   }
   intake.take(1, "x", "", now, 0);
   v1::ContactBatch bad = line_batch("p", 9, 6);
