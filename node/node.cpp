@@ -22,7 +22,8 @@ using std::chrono::milliseconds;
 
 // How often liveness is checked. With the default timeout a frozen probe is noticed within 0.6 s.
 constexpr milliseconds kTick{100};
-// Longest time spent on contacts before answers and everything else get their turn.
+// Longest time, since the poll, until no further contact is taken in this turn and everything else
+// is served. The answers that have come are published first, within this time.
 constexpr milliseconds kDrainTime{1};
 constexpr int kSubscriptionsPerTurn = 100;
 // libzmq reads all waiting messages before it hands us the first. A small limit makes sure that a

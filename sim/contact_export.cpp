@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "node/wire/convert.h"
+#include "node/wire/topics.h"
 
 namespace palpate::sim {
 namespace {
@@ -72,8 +73,9 @@ std::vector<TimedBatch> make_batches(const Scene& scene, std::span<const Simulat
         timed.batch.set_patch(patch.number);
         timed.batch.set_tip_radius_m(probes[i].tip_radius_m);
         timed.batch.set_material_side(to_wire(reported_side(patch)));
-        timed.batch.mutable_header()->set_frame(
-            scene.description.frame().empty() ? std::string("world") : scene.description.frame());
+        timed.batch.mutable_header()->set_frame(scene.description.frame().empty()
+                                                    ? std::string(kDefaultFrame)
+                                                    : scene.description.frame());
         batches.push_back(timed);
         timed.batch.clear_samples();
       }

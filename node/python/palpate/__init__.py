@@ -70,7 +70,6 @@ class Recognizer:
         self._checked = 0  # of those added
         self._points: list[np.ndarray] = []
         self._drawn = 0
-        self._tip_radius = 0.0
         self.dropped = 0
         """Number of points not used because they repeat the place of the point before exactly."""
 
@@ -102,7 +101,6 @@ class Recognizer:
                                             *details(normals, normal_sigma, covariances, self._scale))
         self._added += accepted
         self.dropped += repeated
-        self._tip_radius = max(self._tip_radius, tip_radius)
         self._points.append(points.copy())
         self._drawn += len(points)
         if self._drawn > _MOST_DRAWN:
@@ -117,7 +115,7 @@ class Recognizer:
 
     def _recognize(self, stacklevel: int) -> Result:
         touched = np.concatenate(self._points) if self._points else np.empty((0, 2))
-        result = Result(self._core.recognize(), self._unit, touched, self._tip_radius)
+        result = Result(self._core.recognize(), self._unit, touched)
         if self._added >= 1.25 * self._checked:
             self._checked = self._added
             doubts = self._core.warnings()

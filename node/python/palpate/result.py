@@ -43,8 +43,8 @@ class Result:
     noise_covariance: as covariance, if the probe erred by noise alone.
     compute_s: computing time in seconds since the answer before, without the conversion from and to Python."""
 
-    def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray, tip_radius: float) -> None:
-        self._core, self.unit, self._touched, self._tip_radius = core, unit, touched, tip_radius
+    def __init__(self, core: _core.Answer, unit: str, touched: np.ndarray) -> None:
+        self._core, self.unit, self._touched = core, unit, touched
         self._scale = scale = units(unit)
         self.status = core.status
         self.doubt = core.doubt
