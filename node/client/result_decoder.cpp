@@ -1,5 +1,7 @@
 #include "node/client/result_decoder.h"
 
+#include <algorithm>
+#include <chrono>
 #include <optional>
 
 #include "node/wire/topics.h"
@@ -14,14 +16,26 @@ bool parse(Message& message, std::string_view payload) {
 
 }  // namespace
 
-bool ResultDecoder::has_room_for(std::string_view topic) const {
-  return feeds_.size() < most_topics_ || feeds_.contains(topic);
+/// At the bound the topic that is silent for longest makes room. A node repeats the latest answer
+/// of every group each second, so that a group which is silent for longer is one of its past. One
+/// that is still repeated must stay known, or its answer would be new again with each repeat.
+bool ResultDecoder::has_room_for(std::string_view topic) {
+  constexpr std::chrono::seconds kIdle{10};
+  if (feeds_.size() < most_topics_) return true;
+  if (const auto found = feeds_.find(topic); found != feeds_.end()) return true;
+  const auto oldest = std::min_element(
+      feeds_.begin(), feeds_.end(),
+      [](const auto& a, const auto& b) { return a.second.heard < b.second.heard; });
+  if (oldest == feeds_.end() || now_ - oldest->second.heard <= kIdle) return false;
+  feeds_.erase(oldest);
+  return true;
 }
 
 template <typename Message>
 bool ResultDecoder::is_fresh(const Message& message, std::string_view topic) {
   const auto found = feeds_.find(topic);
   Feed& feed = found != feeds_.end() ? found->second : feeds_[std::string(topic)];
+  feed.heard = now_;
   const SequenceTracker before = feed.sequence;
   const SequenceEvent event = feed.sequence.take(message.header().epoch(), message.header().seq());
   counters_.gaps += feed.sequence.gaps() - before.gaps();
@@ -35,10 +49,15 @@ bool ResultDecoder::is_fresh(const Message& message, std::string_view topic) {
   return false;
 }
 
-ReceivedResult ResultDecoder::take(std::string_view text, std::string_view payload) {
+ReceivedResult ResultDecoder::take(std::string_view text, std::string_view payload,
+                                   SteadyTime now) {
   ReceivedResult result;
-  const std::optional<Topic> topic =
-      has_room_for(text) ? parse_topic(text) : std::optional<Topic>();
+  const std::optional<Topic> topic = parse_topic(text);
+  now_ = now;
+  if (topic && !has_room_for(text)) {
+    ++counters_.over_bound;
+    return result;
+  }
   if (topic && topic->kind == TopicKind::Recognition && parse(recognition_, payload)) {
     if (!is_fresh(recognition_, text)) return result;
     Feed& feed = feeds_.find(text)->second;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "node/intake/sequence_tracker.h"
+#include "node/process/clock.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/local_estimate.pb.h"
 #include "palpate/v1/node_status.pb.h"
@@ -36,6 +37,7 @@ struct SubscriberCounters {
   std::uint64_t missing = 0;     ///< messages missing in the gaps
   std::uint64_t restarts = 0;    ///< of the recognizer, counted per topic
   std::uint64_t malformed = 0;   ///< not of this contract
+  std::uint64_t over_bound = 0;  ///< on topics beyond most_topics, while all of these are heard
 };
 
 /// Returns each message once, in order, and keeps the latest recognition of every group. Accepts
@@ -45,7 +47,8 @@ class ResultDecoder {
   explicit ResultDecoder(std::size_t most_topics) : most_topics_(most_topics) {}
 
   /// Returns the message if it is new, else nothing.
-  ReceivedResult take(std::string_view topic, std::string_view payload);
+  ReceivedResult take(std::string_view topic, std::string_view payload,
+                      SteadyTime now = now_steady());
   /// Counts a message that does not have two frames.
   void count_malformed() { ++counters_.malformed; }
 
@@ -58,14 +61,16 @@ class ResultDecoder {
   // One topic. The last recognition is kept for latest().
   struct Feed {
     SequenceTracker sequence;
+    SteadyTime heard;
     v1::Recognition recognition;
   };
 
-  bool has_room_for(std::string_view topic) const;
+  bool has_room_for(std::string_view topic);
   template <typename Message>
   bool is_fresh(const Message& message, std::string_view topic);
 
   std::size_t most_topics_;
+  SteadyTime now_;  // of the latest message
   std::map<std::string, Feed, std::less<>> feeds_;
   v1::Recognition recognition_;
   v1::LocalEstimate estimate_;

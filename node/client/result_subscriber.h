@@ -28,8 +28,10 @@ struct ResultSubscriberOptions {
   std::optional<CurveClient> curve;
   /// Messages that may wait for a planner that does not read. Further ones are lost.
   int high_water_mark = 1000;
-  /// Number of topics remembered. Messages on further topics count as malformed. A recognizer has
-  /// at most as many topics as groups plus twice its probes.
+  /// Number of topics remembered, for latest() too: at a time a recognizer has at most as many as
+  /// groups plus twice its probes. A further one takes the place of the one that is silent for
+  /// longest, if that is so for ten seconds; else its messages are dropped and counted
+  /// (over_bound).
   std::size_t most_topics = 4096;
 };
 
