@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "palpate/v1/recording.pb.h"
@@ -60,8 +61,14 @@ std::string RecordingWriter::open(const std::string& path) {
     return path + ": exists already";
   }
   file_.open(path, std::ios::binary | std::ios::trunc);
-  if (!file_ || !(file_ << kRecordingMagic << std::flush)) {
-    return path + ": " + std::strerror(errno);
+  if (!file_) return path + ": " + std::strerror(errno);
+  if (!(file_ << kRecordingMagic << std::flush)) {
+    std::string why = path + ": " + std::strerror(errno);
+    file_.close();
+    // A file without a beginning is no recording, and would be in the way of the next attempt.
+    std::error_code failed;
+    std::filesystem::remove(path, failed);
+    return why;
   }
   return {};
 }

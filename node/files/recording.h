@@ -37,7 +37,8 @@ inline constexpr std::size_t kMostRecordBytes = std::size_t{16} << 20;
 /// Appends messages to a file. If the process is killed, at most the message being written is lost.
 class RecordingWriter {
  public:
-  /// Creates a new file; never overwrites one. Returns an empty string or an error.
+  /// Creates a new file; never overwrites one. Returns an empty string, or an error and leaves no
+  /// file.
   std::string open(const std::string& path);
 
   /// Returns false if the file cannot be written.

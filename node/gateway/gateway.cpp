@@ -72,6 +72,7 @@ void Gateway::run(int stop_fd) {
     if (up_) {
       up_->serve(now);
       if (!up_->refusal().empty()) {
+        keep_unsent();
         throw std::runtime_error(to_string(options_.up->endpoint) + " " + up_->refusal());
       }
     }
@@ -80,8 +81,13 @@ void Gateway::run(int stop_fd) {
     service_manager_.alive(now);
   }
   service_manager_.stopping();
-  log_changes();
+  keep_unsent();
   places_.clear();
+}
+
+void Gateway::keep_unsent() {
+  if (up_) up_->keep_unsent();
+  log_changes();
 }
 
 void Gateway::serve_plant(SteadyTime now) {
@@ -158,6 +164,11 @@ void Gateway::publish_status() {
 
 /// Logs what has been lost since the last call, at most once a second.
 void Gateway::log_changes() {
+  if (const std::uint64_t dropped = plant_.connection().dropped(); dropped > dropped_told_) {
+    spdlog::warn("{} messages of the plant dropped, {} in all: this gateway cannot keep up",
+                 dropped - dropped_told_, dropped);
+    dropped_told_ = dropped;
+  }
   if (!up_) return;
   v1::GatewayUpStatus up;
   up_->fill(up);

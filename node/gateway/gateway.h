@@ -44,6 +44,7 @@ class Gateway {
   void tell(SteadyTime now);
   void publish_status();
   void log_changes();
+  void keep_unsent();
 
   GatewayOptions options_;
   zmq::context_t context_;
@@ -58,6 +59,7 @@ class Gateway {
   v1::GatewayStatus status_;
   v1::GatewayUpStatus told_;
   std::string disk_error_told_;
+  std::uint64_t dropped_told_ = 0;
   SteadyTime next_word_;
   SteadyTime next_status_;
   ServiceManager service_manager_;

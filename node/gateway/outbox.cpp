@@ -1,6 +1,7 @@
 #include "node/gateway/outbox.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace palpate::gateway {
@@ -83,6 +84,22 @@ void Outbox::answered(const std::string& lane_name, std::uint64_t ticket, const 
     send(lane, now);
   }
   ended_(message, end);
+}
+
+std::vector<Outgoing> Outbox::take_all() {
+  std::vector<Entry> entries;
+  for (auto& [name, lane] : lanes_) {
+    std::move(lane.begin(), lane.end(), std::back_inserter(entries));
+  }
+  std::sort(entries.begin(), entries.end(),
+            [](const Entry& a, const Entry& b) { return a.ticket < b.ticket; });
+  std::vector<Outgoing> messages;
+  messages.reserve(entries.size());
+  for (Entry& entry : entries) messages.push_back(std::move(entry.message));
+  plant_.forget(this);
+  lanes_.clear();
+  size_ = bytes_ = 0;
+  return messages;
 }
 
 void Outbox::tend(SteadyTime now) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "node/gateway/plant.h"
 #include "node/gateway/subjects.h"
@@ -18,6 +19,9 @@ struct Outgoing {
   Addressed to;
   std::string payload;
   std::uint64_t segment = 0;  ///< of the spool that it was read from; 0 = none
+  /// Of those that come from no segment: the spool's next_segment() when it came.
+  std::uint64_t before_segment = 0;
+  std::string topic = {};  ///< of those that come from no segment
 };
 
 /// Publishes each message, and repeats it until the plant confirms that it is stored. To keep the
@@ -45,6 +49,9 @@ class Outbox {
   /// Sends nothing before `time`. A gateway that starts while another one runs waits this long, so
   /// that what the other one had before it is stored first, in the other one's order.
   void hold_until(SteadyTime time) { held_until_ = time; }
+
+  /// Takes out all messages that are not known to be stored, in the order in which they were added.
+  std::vector<Outgoing> take_all();
 
   std::size_t size() const { return size_; }
 

@@ -59,7 +59,7 @@ void Spool::take_up(const std::string& file) {
   std::error_code failed;
   segment.bytes = fs::file_size(file, failed);
   if (failed) return;
-  next_number_ = std::max(next_number_, number + 1);
+  next_number_ = std::max(next_number_, (number / 2 + 1) * 2);
   unread_ += segment.messages;
   bytes_ += segment.bytes;
   segments_[number] = segment;
@@ -71,15 +71,43 @@ void Spool::take_up(const std::string& file) {
 
 bool Spool::begin_segment() {
   if (writer_) return true;
-  const std::uint64_t number = next_number_++;
+  const std::uint64_t number = next_number_;
   writer_.emplace();
   if (const std::string why = writer_->open(path_of(number)); !why.empty()) {
     error_ = why;
     writer_.reset();
+    // Otherwise the number is used again: the disk may be full for long.
+    std::error_code failed;
+    if (fs::exists(path_of(number), failed)) next_number_ += 2;
     return false;
   }
+  next_number_ += 2;
   segments_[number] = {};
   return true;
+}
+
+void Spool::add_before(std::uint64_t next_segment, std::string_view topic,
+                       std::string_view payload) {
+  const std::uint64_t size = kRecordBytes + topic.size() + payload.size();
+  const std::uint64_t number = next_segment - 1;
+  if (number != kept_number_) {
+    kept_number_ = number;
+    kept_writer_.emplace();
+    if (const std::string why = kept_writer_->open(path_of(number)); !why.empty()) {
+      error_ = why;
+      kept_writer_.reset();
+    }
+  }
+  // The oldest are what the bound takes.
+  const bool has_room = bytes_ + size <= most_bytes_;
+  if (!kept_writer_ || !has_room ||
+      !kept_writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)})) {
+    if (kept_writer_ && has_room) error_ = path_of(number) + ": cannot be written";
+    if (has_room) kept_writer_.reset();
+    ++lost_;
+    return;
+  }
+  bytes_ += size;
 }
 
 void Spool::add(std::string_view topic, std::string_view payload) {

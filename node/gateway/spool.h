@@ -29,6 +29,15 @@ class Spool {
 
   void add(std::string_view topic, std::string_view payload);
 
+  /// The number of the segment that the next message begins if it begins one. Messages that are not
+  /// added now come before it.
+  std::uint64_t next_segment() const { return next_number_; }
+
+  /// Adds a message that came when next_segment() was `next_segment`, before all that were added
+  /// since. For the end of a process: the message is not read by this one. Within one number, in
+  /// the order of the calls; numbers must not decrease.
+  void add_before(std::uint64_t next_segment, std::string_view topic, std::string_view payload);
+
   struct Taken {
     std::uint64_t segment = 0;
     RecordedMessage message;
@@ -68,7 +77,9 @@ class Spool {
   std::optional<RecordingWriter> writer_;      ///< of the last segment, unless it is closed
   std::optional<RecordingReader> reader_;
   std::uint64_t read_segment_ = 0;
-  std::uint64_t next_number_ = 1;
+  std::uint64_t next_number_ = 2;               ///< even; add_before() uses the odd ones
+  std::optional<RecordingWriter> kept_writer_;  ///< of add_before()
+  std::uint64_t kept_number_ = 0;
   std::uint64_t unread_ = 0;
   std::uint64_t bytes_ = 0;
   std::uint64_t lost_ = 0;

@@ -13,6 +13,10 @@ constexpr milliseconds kDrainTime{2};
 // Maximum of topics per cell: as many probes and groups as the largest node accepts (kMostThings in
 // node/options.h).
 constexpr std::size_t kMostTopics = 200'000;
+// A topic that is silent for longer makes room for others. Nodes repeat the latest message of every
+// group each second, so that nobody sends it any more.
+constexpr std::chrono::seconds kTopicIdle{60};
+constexpr std::chrono::seconds kBetweenEvictions{1};
 // The node's queue for us holds some thousands more. Beyond both the oldest messages are lost, as
 // their sequence numbers show.
 constexpr int kHighWaterMark = 20'000;
@@ -67,7 +71,7 @@ bool Upward::serve(SteadyTime now) {
       spool_.release(taken->segment);
       continue;
     }
-    outbox_.add({std::move(*to), std::move(taken->message.payload), taken->segment}, now);
+    outbox_.add({std::move(*to), std::move(taken->message.payload), taken->segment, 0, {}}, now);
   }
   return more;
 }
@@ -77,32 +81,48 @@ void Upward::take(const TwoFrames& message, SteadyTime now) {
   const std::string_view payload = view_of(message.payload);
   std::optional<Addressed> to;
   if (message.frame_count == 2) to = address(options_.cell, topic, payload);
-  const bool has_place = sequences_.size() < kMostTopics || sequences_.contains(topic);
-  if (!to || !has_place) {
+  if (!to || !has_place(topic, now)) {
     counters_.set_malformed(counters_.malformed() + 1);
     return;
   }
-  if (!is_news(topic, *to)) return;
+  if (!is_news(topic, *to, now)) return;
   counters_.set_received(counters_.received() + 1);
   // What waits on disk goes first.
   if (spool_.empty() && outbox_.has_room(now)) {
-    outbox_.add({std::move(*to), std::string(payload), 0}, now);
+    outbox_.add(
+        {std::move(*to), std::string(payload), 0, spool_.next_segment(), std::string(topic)}, now);
   } else {
     spool_.add(topic, payload);
   }
 }
 
-/// False for repeats: a node sends the latest message of each group again once a second.
-bool Upward::is_news(std::string_view topic, const Addressed& to) {
-  auto found = sequences_.find(topic);
-  if (found == sequences_.end()) {
-    found = sequences_.emplace(std::string(topic), SequenceTracker()).first;
+void Upward::keep_unsent() {
+  // What was read from a segment is still in it: it is deleted when all of it is stored.
+  for (const Outgoing& message : outbox_.take_all()) {
+    if (message.segment == 0) {
+      spool_.add_before(message.before_segment, message.topic, message.payload);
+    }
   }
-  SequenceTracker& sequence = found->second;
+}
+
+/// False for repeats: a node sends the latest message of each group again once a second.
+bool Upward::is_news(std::string_view topic, const Addressed& to, SteadyTime now) {
+  auto found = topics_.find(topic);
+  if (found == topics_.end()) found = topics_.emplace(std::string(topic), Topic()).first;
+  found->second.heard = now;
+  SequenceTracker& sequence = found->second.sequence;
   const std::uint64_t missing = sequence.missing();
   const SequenceEvent event = sequence.take(to.epoch, to.seq);
   counters_.set_missing(counters_.missing() + sequence.missing() - missing);
   return palpate::is_news(event);
+}
+
+bool Upward::has_place(std::string_view topic, SteadyTime now) {
+  if (topics_.size() >= kMostTopics && !topics_.contains(topic) && now >= next_eviction_) {
+    next_eviction_ = now + kBetweenEvictions;
+    std::erase_if(topics_, [&](const auto& each) { return now - each.second.heard > kTopicIdle; });
+  }
+  return topics_.size() < kMostTopics || topics_.contains(topic);
 }
 
 void Upward::fill(v1::GatewayUpStatus& status) const {

@@ -39,6 +39,10 @@ class Upward {
   /// times a second. Returns true if more waits.
   bool serve(SteadyTime now);
 
+  /// Writes to disk what the plant has not confirmed, for the next process; call it at the end.
+  /// What the plant has stored all the same, it knows by its id.
+  void keep_unsent();
+
   /// Why the cell's node refuses this gateway; empty if it does not.
   const std::string& refusal() { return handshakes_.refusal(); }
 
@@ -47,14 +51,21 @@ class Upward {
 
  private:
   void take(const TwoFrames& message, SteadyTime now);
-  bool is_news(std::string_view topic, const Addressed& to);
+  bool is_news(std::string_view topic, const Addressed& to, SteadyTime now);
+  bool has_place(std::string_view topic, SteadyTime now);
+
+  struct Topic {
+    SequenceTracker sequence;
+    SteadyTime heard;
+  };
 
   UpwardOptions options_;
   zmq::socket_t socket_;
   HandshakeWatch handshakes_;
   Spool spool_;
   Outbox outbox_;
-  std::map<std::string, SequenceTracker, std::less<>> sequences_;  // by topic
+  std::map<std::string, Topic, std::less<>> topics_;
+  SteadyTime next_eviction_;
   v1::GatewayUpStatus counters_;
 };
 

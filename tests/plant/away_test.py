@@ -62,6 +62,30 @@ class Away(unittest.TestCase):
                 left = [path.name for path in (bus.folder / "up.spool").glob("*.recording")]
                 self.assertLessEqual(len(left), 1, "what is stored is deleted")
 
+    def test_a_gateway_that_is_stopped_keeps_what_is_on_its_way(self):
+        """The plant stands still: what the gateway has taken is neither stored nor on disk yet."""
+        with Bus() as bus, Servers(bus.folder) as servers:
+            servers.start().wait()
+            endpoint = f"ipc://{bus.folder}/contacts"
+            gateway = carrier(bus, servers.url, "up", "press", "bind:" + endpoint, "--carry", "contact")
+            with Client(servers.url) as client:
+                gateway_status(client, "press", "up")
+                time.sleep(1.2)  # it holds back at its start
+                probe = Probe(bus.publisher(high_water_mark=100000))
+                probe.send(probe.batch(0))
+                wait_for_stored(client, "palpate-press-contact", 1)
+            servers.kill(with_signal=signal.SIGSTOP)
+            for _ in range(99):
+                probe.send(probe.batch(10 * probe.seq, step=0.001))
+            time.sleep(0.3)
+            self.assertEqual(stop(gateway)[0], 0)
+            servers.kill()
+            servers.start().wait()
+            carrier(bus, servers.url, "up", "press", "bind:" + endpoint, "--carry", "contact")
+            with Client(servers.url) as client:
+                wait_for_stored(client, "palpate-press-contact", 100)
+                Ledger(client, "press").sent_once(self, {probe.name: 100})
+
     def test_beyond_the_bound_the_oldest_are_lost_and_counted(self):
         bound = 1 << 18
         with Bus() as bus, Servers(bus.folder) as servers:

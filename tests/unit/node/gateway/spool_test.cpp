@@ -1,8 +1,10 @@
 #include "node/gateway/spool.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <stdexcept>
@@ -107,6 +109,50 @@ TEST_F(SpoolTest, ARecordThatIsBrokenOffIsLeftOut) {
   Spool spool(folder_, kBound);
   EXPECT_EQ(all_of(spool), numbers(0, 9));
   EXPECT_TRUE(std::filesystem::exists(folder_ + "/stranger"));
+}
+
+TEST_F(SpoolTest, AFullDiskLeavesNoFileForEachMessage) {
+  Spool spool(folder_, kBound);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full{0, before.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);  // then a write fails, as on a full disk
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  for (const std::string& number : numbers(0, 10)) spool.add("contact/f/", number);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  EXPECT_EQ(spool.lost(), 10U);
+  EXPECT_FALSE(spool.error().empty());
+  EXPECT_EQ(files(), 0U);
+  for (const std::string& number : numbers(10, 20)) spool.add("contact/f/", number);
+  EXPECT_EQ(spool.error(), "");
+  EXPECT_EQ(all_of(spool), numbers(10, 20));
+}
+
+TEST_F(SpoolTest, WhatIsKeptAtTheEndComesBeforeWhatWasAddedSince) {
+  {
+    Spool spool(folder_, kBound);
+    for (const std::string& number : numbers(0, 5)) spool.add("contact/f/", number);
+    EXPECT_EQ(all_of(spool, false), numbers(0, 5));
+    const std::uint64_t next = spool.next_segment();  // 5 to 9 go past the disk
+    for (const std::string& number : numbers(10, 15)) spool.add("contact/f/", number);
+    EXPECT_EQ(all_of(spool, false), numbers(10, 15));
+    const std::uint64_t later = spool.next_segment();  // so do 15 to 19
+    for (const std::string& number : numbers(5, 10)) spool.add_before(next, "contact/f/", number);
+    for (const std::string& number : numbers(15, 20)) spool.add_before(later, "contact/f/", number);
+  }
+  Spool spool(folder_, kBound);
+  EXPECT_EQ(all_of(spool), numbers(0, 20));
+  spool.add("contact/f/", "20");
+  EXPECT_EQ(all_of(spool), numbers(20, 21));
+}
+
+TEST_F(SpoolTest, WhatHasNoRoomAtTheEndIsCounted) {
+  Spool spool(folder_, kBound);
+  for (const std::string& number : numbers(0, 1000)) {
+    spool.add_before(spool.next_segment(), "contact/f/", number);
+  }
+  EXPECT_LE(spool.bytes(), kBound);
+  EXPECT_GT(spool.lost(), 0U);
 }
 
 TEST_F(SpoolTest, OneProcessAFolder) {
