@@ -86,6 +86,9 @@ void for_each_option(Options& options, Visit&& visit) {
         intake.groups.max_groups_per_probe);
   visit({"max_probes_per_group", "Most probes that touch one object", 1, kMostThings},
         intake.group.max_probes_per_group);
+  visit({"sequence_by_group",
+         "Accept messages in the order of each group alone, as palpate-gateway replays them"},
+        intake.sequence_by_group);
   visit({"max_waiting_bytes",
          "Memory of messages that wait for recognition, of all groups together [bytes]", 1 << 16,
          4e9},

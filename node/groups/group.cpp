@@ -65,6 +65,19 @@ bool Group::is_touched_by_others_than(std::string_view probe) const {
                      [&](const Member& member) { return member.probe != probe; });
 }
 
+const SequenceTracker* Group::sequence_of(std::string_view probe) const {
+  const auto found = sequences_.find(probe);
+  return found == sequences_.end() ? nullptr : &found->second;
+}
+
+SequenceEvent Group::take_sequence(const ContactMessage& message) {
+  auto found = sequences_.find(message.probe);
+  if (found == sequences_.end()) {
+    found = sequences_.emplace(std::string(message.probe), SequenceTracker()).first;
+  }
+  return found->second.take(message.epoch, message.seq);
+}
+
 std::shared_ptr<GroupRecognizer> Group::begin_work() {
   assert(!in_work_);
   in_work_ = true;

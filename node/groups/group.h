@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -75,6 +76,11 @@ class Group {
   /// Whether other probes than this one have touched the present object.
   bool is_touched_by_others_than(std::string_view probe) const;
 
+  /// Of the probe's messages in this group, all objects of it, that take_sequence() was called for;
+  /// nullptr if there are none.
+  const SequenceTracker* sequence_of(std::string_view probe) const;
+  SequenceEvent take_sequence(const ContactMessage& message);
+
   const std::string& name() const { return name_; }
   std::uint64_t object() const { return object_; }
   SteadyTime last_taken() const { return last_taken_; }
@@ -100,6 +106,7 @@ class Group {
   std::uint64_t object_ = 0;
   std::vector<Member> members_;  ///< empty = no object yet
   SteadyTime last_taken_;
+  std::map<std::string, SequenceTracker, std::less<>> sequences_;  // by probe
 };
 
 }  // namespace palpate

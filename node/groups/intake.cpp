@@ -23,10 +23,16 @@ std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
   return __builtin_sub_overflow(received_ns, sent_ns, &latency) ? 0 : latency;
 }
 
+bool is_news_to(const Group* group, const ContactMessage& message) {
+  const SequenceTracker* sequence = group == nullptr ? nullptr : group->sequence_of(message.probe);
+  return sequence == nullptr || is_news(sequence->judge(message.epoch, message.seq));
+}
+
 }  // namespace
 
 Intake::Intake(const IntakeOptions& options)
-    : decoder_(options.limits),
+    : sequence_by_group_(options.sequence_by_group),
+      decoder_(options.limits),
       probes_(options.max_probes, options.groups.evict_idle),
       groups_(options.groups, options.recognizer, options.group) {}
 
@@ -35,8 +41,10 @@ RejectReason Intake::judge(const Probe* probe, const Group* group, SteadyTime no
   if (probe == nullptr && !probes_.has_room(now)) return v1::REJECT_REASON_TOO_MANY_PROBES;
   if (probe != nullptr) {
     const SequenceEvent event = probe->sequence.judge(message.epoch, message.seq);
-    if (event == SequenceEvent::StaleEpoch) return v1::REJECT_REASON_STALE_EPOCH;
-    if (!is_news(event)) return v1::REJECT_REASON_SEQUENCE;
+    if (!is_news(event) && !(sequence_by_group_ && is_news_to(group, message))) {
+      return event == SequenceEvent::StaleEpoch ? v1::REJECT_REASON_STALE_EPOCH
+                                                : v1::REJECT_REASON_SEQUENCE;
+    }
   }
   if (group == nullptr && !groups_.has_room(message.probe, now)) {
     return v1::REJECT_REASON_TOO_MANY_GROUPS;
@@ -88,7 +96,12 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
     if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
   }
   const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);
-  groups_.take(*group, message, continuity_of(event, probe->group == message.group), now);
+  Continuity continuity = continuity_of(event, probe->group == message.group);
+  if (sequence_by_group_) {
+    const SequenceEvent in_group = group->take_sequence(message);
+    if (!is_news(event)) continuity = continuity_of(in_group, /*same_group=*/true);
+  }
+  groups_.take(*group, message, continuity, now);
 
   const std::size_t count = message.samples.size();
   probe->group = message.group;

@@ -19,6 +19,9 @@ struct IntakeOptions {
   IngestLimits limits;
   std::size_t max_probes = 256;
   GroupBounds groups;  ///< evict_idle applies to probes too
+  /// Accept a message whose seq is older than the probe's latest in another group, as long as it is
+  /// newer than all of the probe in its own.
+  bool sequence_by_group = false;
   GroupOptions group;
   RecognizerOptions recognizer;
 };
@@ -63,6 +66,7 @@ class Intake {
   void reject(v1::RejectReason reason, const Sender& sender, Probe* probe);
   v1::RejectReason judge(const Probe* probe, const Group* group, SteadyTime now) const;
 
+  bool sequence_by_group_;
   ContactDecoder decoder_;
   ProbeRegistry probes_;
   GroupRegistry groups_;

@@ -174,6 +174,27 @@ TEST_F(IntakeTest, AGroupThatAnotherProbeHasTakenOverIsNotGivenUp) {
   EXPECT_EQ(intake.groups().find("dish"), nullptr);
 }
 
+TEST_F(IntakeTest, GroupsMayBeReplayedOneAfterTheOther) {
+  IntakeOptions options;
+  for (const bool by_group : {false, true}) {
+    options.sequence_by_group = by_group;
+    Intake intake(options);
+    const v1::RejectReason late = by_group ? kTaken : v1::REJECT_REASON_SEQUENCE;
+    for (const std::uint64_t seq : {0, 2, 4}) {
+      EXPECT_EQ(give(intake, "p", in_group("cup", 1, line_batch("p", 1, seq))), kTaken);
+    }
+    for (const std::uint64_t seq : {1, 3}) {
+      EXPECT_EQ(give(intake, "p", in_group("plate", 1, line_batch("p", 1, seq))), late);
+    }
+    // What comes twice in a group is a duplicate, and so it is after a newer object.
+    EXPECT_EQ(give(intake, "p", in_group("plate", 2, line_batch("p", 1, 5))), kTaken);
+    EXPECT_EQ(give(intake, "p", in_group("plate", 1, line_batch("p", 1, 3))),
+              v1::REJECT_REASON_SEQUENCE);
+    EXPECT_EQ(give(intake, "p", in_group("plate", 2, line_batch("p", 1, 5))),
+              v1::REJECT_REASON_SEQUENCE);
+  }
+}
+
 TEST_F(IntakeTest, ANewObjectForgetsTheOld) {
   give("p", in_group("cup", 1, line_batch("p", 1, 0, 50)));
   EXPECT_EQ(recognized_samples("cup"), 50U);
