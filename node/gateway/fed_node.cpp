@@ -17,6 +17,8 @@ namespace {
 // Messages that may wait for us in the node, which drops further ones: many times what can be in
 // flight.
 constexpr const char* kNodesHighWaterMark = "100000";
+// The most that the node's option takes: only the number of groups is to bound what is held.
+constexpr const char* kNodesProbes = "100000";
 
 SocketSettings unbounded() {
   SocketSettings settings;
@@ -44,7 +46,14 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
                                      "--contacts-high-water-mark",
                                      kNodesHighWaterMark,
                                      "--max-message-bytes",
-                                     std::to_string(options.max_message_bytes)};
+                                     std::to_string(options.max_message_bytes),
+                                     "--max-groups",
+                                     std::to_string(options.most_groups),
+                                     "--max-groups-per-probe",
+                                     std::to_string(options.most_groups),
+                                     "--sequence-by-group",
+                                     "--max-probes",
+                                     kNodesProbes};
   if (!options.config.empty()) {
     arguments.emplace_back("--config");
     arguments.push_back(options.config);

@@ -19,6 +19,9 @@ struct FedNodeOptions {
   std::string folder;  ///< holds its two endpoints; tools may use them like those of any node
   /// Longest contact message: the node would cut our connection for a longer one. [bytes]
   std::size_t max_message_bytes = IngestLimits{}.max_message_bytes;
+  /// Groups that the node holds. It must forget none that we do not forget: it would go on with a
+  /// part of its object.
+  std::size_t most_groups = 16'384;
 };
 
 /// Starts without any sequence or object. The node ends with this object and with this process.

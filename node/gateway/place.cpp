@@ -24,9 +24,14 @@ using std::chrono::milliseconds;
 // (one group may use half of max_waiting_bytes).
 constexpr std::size_t kMostInFlight = 512;
 constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
-// Maximum of groups per place: half of the largest number that a node accepts (kMostThings in
-// node/options.h). More names can only come from a stranger; they are not accepted.
-constexpr std::size_t kMostGroups = 50'000;
+// With more groups than this, and nothing to do, a place begins anew, with none: where each part
+// has a group of its own, all but a few are over.
+constexpr std::size_t kManyGroups = 1024;
+// But not more often than this: where so many groups are in use, each is replayed after it.
+constexpr std::chrono::seconds kBetweenClearings{60};
+// Refused contacts that are remembered. They may be delivered again until all contacts before them
+// are done, and the plant delivers 8,192 contacts ahead (contact_consumer.cpp).
+constexpr std::size_t kMostRefused = 16'384;
 constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
 // A node publishes its status every second.
@@ -70,6 +75,7 @@ Place::~Place() {
 
 void Place::begin(SteadyTime now) {
   has_begun_ = true;
+  begun_ = now;
   try {
     node_ = std::make_unique<FedNode>(
         context_, node_options_,
@@ -95,6 +101,10 @@ void Place::forget_all() {
 
 void Place::fail(const std::string& why) {
   spdlog::warn("{}: begins anew: {}", printable(name_.text()), why);
+  begin_anew();
+}
+
+void Place::begin_anew() {
   status_.set_restarts(status_.restarts() + 1);
   forget_all();
   has_begun_ = false;
@@ -102,14 +112,18 @@ void Place::fail(const std::string& why) {
 }
 
 void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) {
+  if (refused_.contains(stream_seq)) return consumer_.done(stream_seq);
   std::optional<GroupContact> read;
   if (message.payload().size() <= node_options_.max_message_bytes) {
     read = read_contact(message.subject(), message.payload(), stream_seq);
   }
-  if (!read || (groups_.size() >= kMostGroups && !groups_.contains(read->group))) {
+  if (!read) {
     status_.set_hostile(status_.hostile() + 1);
-    consumer_.done(stream_seq);
-    return;
+    return refuse(stream_seq);
+  }
+  // (More groups than the plant delivers contacts ahead: so some were done since the last time.)
+  if (groups_.size() >= node_options_.most_groups && !groups_.contains(read->group)) {
+    return fail("it has " + std::to_string(groups_.size()) + " groups");
   }
   const auto found = groups_.try_emplace(std::move(read->group)).first;
   Group& group = found->second;
@@ -145,7 +159,7 @@ void Place::ask(const std::string& name, Group& group) {
         std::any_of(asked.arrived.begin(), asked.arrived.end(),
                     [&](const FedContact& contact) { return contact.stream_seq > asked.through; });
     if (!is_new) {
-      for (const FedContact& contact : asked.arrived) consumer_.done(contact.stream_seq);
+      for (const FedContact& contact : asked.arrived) answered_before(contact.stream_seq);
       asked.arrived.clear();
       asked.state = Group::State::Unknown;
       return;
@@ -193,11 +207,24 @@ void Place::end_replay(Group& group) {
 }
 
 void Place::add_new(Group& group, FedContact contact) {
-  if (contact.stream_seq <= group.through) return consumer_.done(contact.stream_seq);
-  status_.set_contacts(status_.contacts() + 1);
+  if (contact.stream_seq <= group.through) return answered_before(contact.stream_seq);
+  if (counted_.insert(contact.stream_seq).second) status_.set_contacts(status_.contacts() + 1);
   group.unanswered.push_back(contact.stream_seq);
   group.feed.add(std::move(contact));
   make_ready(group);
+}
+
+void Place::refuse(std::uint64_t stream_seq) {
+  counted_.erase(stream_seq);
+  refused_.insert(stream_seq);
+  if (refused_.size() > kMostRefused) refused_.erase(refused_.begin());
+  consumer_.done(stream_seq);
+}
+
+/// The answer was stored before this place began anew, and nobody told.
+void Place::answered_before(std::uint64_t stream_seq) {
+  if (counted_.erase(stream_seq) > 0) status_.set_answered(status_.answered() + 1);
+  consumer_.done(stream_seq);
 }
 
 // --- Between the node and the plant
@@ -274,7 +301,7 @@ void Place::node_rejected() {
     if (out->is_new) {
       status_.set_rejected(status_.rejected() + 1);
       std::erase(group.unanswered, out->stream_seq);
-      consumer_.done(out->stream_seq);
+      refuse(out->stream_seq);
     }
   }
   make_ready(group);
@@ -347,6 +374,7 @@ void Place::stored(const std::string& name, const Stored& stored) {
       break;
   }
   while (!group.unanswered.empty() && group.unanswered.front() <= span.through) {
+    counted_.erase(group.unanswered.front());
     consumer_.done(group.unanswered.front());
     group.unanswered.pop_front();
   }
@@ -372,12 +400,26 @@ void Place::is_it_ours(const std::string& name) {
   });
 }
 
+bool Place::is_waiting() const {
+  return std::any_of(groups_.begin(), groups_.end(), [](const auto& entry) {
+    const Group& group = entry.second;
+    return group.state == Group::State::Asking || !group.arrived.empty() ||
+           !group.unanswered.empty() || group.feed.in_flight_count() > 0 || !group.answers.empty();
+  });
+}
+
 void Place::tend(SteadyTime now) {
   next_tend_ = now + kTend;
   consumer_.tend(now);
   for (auto& [name, group] : groups_) {
     if (group.state == Group::State::Unknown && !group.arrived.empty()) ask(name, group);
     store_next(name, group);
+  }
+  if (groups_.size() > kManyGroups && now >= begun_ + kBetweenClearings && !is_waiting()) {
+    spdlog::info("{}: begins anew: of its {} groups none waits", printable(name_.text()),
+                 groups_.size());
+    consumer_.acknowledge();
+    begin_anew();
   }
 }
 

@@ -15,6 +15,7 @@
 #include <deque>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <zmq.hpp>
@@ -80,6 +81,8 @@ class Place {
 
   void begin(SteadyTime now);
   void fail(const std::string& why);
+  void begin_anew();
+  bool is_waiting() const;
   void forget_all();
   void take_contact(const PlantMessage& message, std::uint64_t stream_seq);
 
@@ -88,6 +91,10 @@ class Place {
   void replay(const std::string& name, std::uint64_t object, std::uint64_t next_seq);
   void end_replay(Group& group);
   void add_new(Group& group, FedContact contact);
+
+  // Each contact is counted once, however often it is delivered.
+  void refuse(std::uint64_t stream_seq);
+  void answered_before(std::uint64_t stream_seq);
 
   // Between the node and the plant.
   void make_ready(Group& group);
@@ -107,6 +114,8 @@ class Place {
   FedNodeOptions node_options_;
   ContactConsumer consumer_;
   v1::GatewayPlaceStatus status_;
+  std::set<std::uint64_t> counted_;  // contacts that have neither an answer nor a refusal yet
+  std::set<std::uint64_t> refused_;  // the latest ones: rejected by the node, or hostile
 
   // State that is discarded when the place begins anew.
   std::unique_ptr<FedNode> node_;
@@ -121,6 +130,7 @@ class Place {
 
   SteadyTime begin_at_;
   bool has_begun_ = false;
+  SteadyTime begun_;
   SteadyTime next_tend_;
 };
 

@@ -17,7 +17,7 @@ import time
 import unittest
 
 from bus import Bus, Probe, receive
-from plant import Client, Ledger, Servers, carrier, recogniser, skip_where_absent
+from plant import Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent
 
 KILLS = int(os.environ.get("PALPATE_PLANT_KILLS", "4"))
 SEED = int(os.environ.get("PALPATE_TEST_SEED", "1"))
@@ -229,6 +229,47 @@ class LedgerTest(unittest.TestCase):
         # As for a file and its replay (same_answer_test.py).
         self.assertLess(worst, 0.1)
         return worst
+
+
+class ManyGroups(unittest.TestCase):
+    def test_a_group_for_each_part(self):
+        """More groups than a node holds by itself, of one probe: none is forgotten while it is in use, and those of which
+        nothing comes any more are."""
+        count = 1100  # more than kManyGroups (place.cpp)
+        with Bus() as bus, Servers(bus.folder, partitions=1) as servers:
+            servers.start().wait()
+            endpoint = f"ipc://{bus.folder}/contacts"
+            carrier(bus, servers.url, "up", "press", "bind:" + endpoint, "--carry", "contact")
+            recogniser(bus, servers.url, "down", ["press:0"])
+            with Client(servers.url) as client:
+                gateway_status(client, "press", "down")
+                probe = Probe(bus.publisher(high_water_mark=100000))
+
+                def stroke(groups, first):
+                    for number in groups:
+                        probe.group = f"part{number}"
+                        probe.send(probe.batch(first))
+                        time.sleep(0.001)
+
+                def place():
+                    return gateway_status(client, "press", "down").places[0]
+
+                def samples():
+                    return {group: answers[-1][3].sample_count
+                            for group, answers in Ledger(client, "press").answers.items()}
+
+                stroke(range(count), 0)
+                stroke(range(count), 10)
+                wait_until(lambda: place().answered == 2 * count, 40, "not all are answered")
+                self.assertEqual(set(samples().values()), {20})
+                wait_until(lambda: place().restarts > 0, 100, "no group is ever forgotten")
+                stroke(range(5), 20)
+                wait_until(lambda: place().answered == 2 * count + 5, 40, "what goes on is not answered")
+                now = samples()
+                self.assertEqual([now[f"part{number}"] for number in range(6)], [30] * 5 + [20])
+                status = place()
+                self.assertEqual((status.contacts, status.rejected, status.hostile), (2 * count + 5, 0, 0))
+                Ledger(client, "press").answered_once(self)
 
 
 if __name__ == "__main__":
