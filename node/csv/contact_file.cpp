@@ -66,10 +66,13 @@ Result<csv::PointTable> read_own(std::string_view text, std::string_view name,
   return Result<csv::PointTable>::ok(std::move(result));
 }
 
-/// One patch is one touch of one tip; what is wrong, or nothing.
-std::string disagreement_in_patches(const ContactTable& table) {
+/// One patch is one touch of one tip; what is wrong, ":LINE: " before it where that is known, or
+/// nothing.
+std::string disagreement_in_patches(const ContactTable& table,
+                                    const std::vector<std::size_t>& lines) {
   std::map<std::tuple<std::size_t, std::uint64_t, std::size_t, std::uint32_t>, PatchContext> seen;
-  for (const ContactRow& row : table.rows) {
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    const ContactRow& row = table.rows[i];
     const PatchContext& first =
         seen.try_emplace({row.group, row.object, row.probe, row.context.patch}, row.context)
             .first->second;
@@ -77,7 +80,8 @@ std::string disagreement_in_patches(const ContactTable& table) {
                        : row.context.material_side != first.material_side ? "material_side"
                                                                           : nullptr;
     if (what != nullptr) {
-      return std::string(what) + " changes within patch " + std::to_string(row.context.patch) +
+      const std::string line = i < lines.size() ? ":" + std::to_string(lines[i]) : "";
+      return line + ": " + what + " changes within patch " + std::to_string(row.context.patch) +
              " of probe " + table.names[row.probe];
     }
   }
@@ -166,8 +170,8 @@ Read parse_contact_file(std::string_view text, std::string_view name,
     }
     part_into_touches(file.table);
   }
-  if (const std::string why = disagreement_in_patches(file.table); !why.empty()) {
-    return Read::fail(std::string(name) + ": " + why);
+  if (const std::string why = disagreement_in_patches(file.table, points.lines); !why.empty()) {
+    return Read::fail(std::string(name) + why);
   }
   return Read::ok(std::move(file));
 }

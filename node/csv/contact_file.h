@@ -52,8 +52,8 @@ struct ContactFile {
 };
 
 /// Reads a file, or standard input for "-". Strict: used as a whole or not at all; an error reads
-/// "FILE:LINE:COLUMN: what is wrong", COLUMN counting bytes from 1; of the points together, of a
-/// patch of points or of the file itself "FILE: what is wrong".
+/// "FILE:LINE:COLUMN: what is wrong", COLUMN counting bytes from 1; of a row that contradicts its
+/// patch "FILE:LINE: what is wrong", and of all points or the file itself "FILE: what is wrong".
 Result<ContactFile> read_contact_file(const std::string& path, const ContactFileOptions& options);
 
 /// The same from memory; `name` stands for the file in errors.

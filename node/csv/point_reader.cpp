@@ -353,6 +353,7 @@ class PointReader {
       return;
     }
     result_.table.rows.push_back(row);
+    result_.lines.push_back(lines_.number());
     if (axes == 3) result_.points.push_back(point);
   }
 

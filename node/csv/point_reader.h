@@ -18,6 +18,7 @@ inline constexpr double kMaxCoordinateM = IngestLimits{}.max_coordinate_m;
 struct PointTable {
   ContactTable table;                   ///< positions: x and y of `points` where there are just two
   std::vector<Eigen::Vector3d> points;  ///< where three coordinates were read; else empty [m]
+  std::vector<std::size_t> lines;       ///< of the rows in the file, from 1; empty = not known
   bool is_probe_log = false;            ///< every row is a touch
   bool has_patches = false;             ///< the file says where patches end
   bool has_three_without_names = false;  ///< columns

@@ -503,7 +503,7 @@ class Formats(unittest.TestCase):
                               ("x,y,time_s\n1,2,inf\n", "time 'inf': not a finite number"),
                               ("x,y,time_s\n1,2,noon\n", "time 'noon': not a number"),
                               ("x,y,tip_radius_mm,tip_diameter_mm\n1,2,1,2\n", "tip_diameter_mm comes twice"),
-                              ("x,y,tip_radius_mm,patch\n1,2,1,0\n1,3,2,0\n", "tip_radius changes within patch 0"),
+                              ("x,y,tip_radius_mm,patch\n1,2,1,0\n1,3,2,0\n", "FILE:3: tip_radius changes within patch 0"),
                               ("x_m,y_m\n1,2e9\n", "FILE:2:3: y '2e9': must lie in")):
             self.assertIn(message, self.refused(text))
         self.assertIn("none of m, mm", run(TOOL, "fit", "-", "--unit", "furlong", text_in="1,2\n")[2])
