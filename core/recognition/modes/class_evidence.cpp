@@ -380,14 +380,14 @@ ClassEvidence with_mode_at_parabola(ClassEvidence spline, const ClassEvidence& p
   if (!best) {
     return spline;
   }
-  // What it has besides may be the arc's already.
+  // What it has besides its mode may be an arc's already, and of arcs the best one counts (arm_of).
   const double before = log_mass(spline.nodes[spline.mode].curve);
   const double others = std::expm1(spline.log_all_modes);
   if (mass > before) {
-    const double own = spline.touch.as_arc ? 0.0 : std::exp(before - mass);
+    const double of_no_arc = spline.touch.as_arc ? others : 1.0;
     spline.touch = best->touch;
     set_mode(std::move(best->curve), &spline);
-    set_log_all_modes(std::log1p(own + others * std::exp(before - mass)), &spline);
+    set_log_all_modes(std::log1p(of_no_arc * std::exp(before - mass)), &spline);
   } else if (!spline.touch.as_arc) {
     set_log_all_modes(std::log1p(std::max(others, std::exp(mass - before))), &spline);
   }

@@ -26,12 +26,14 @@ std::size_t nearest(const std::vector<Vec2>& points_m, const Vec2& place_m) {
 /// For each point of `reduced`, the kept one that lies nearest. Strokes that have not grown leave
 /// their points as they were, one after the other: only the others are compared with all.
 std::vector<std::size_t> nearest_kept(const std::vector<Vec2>& kept_m, const FitData& reduced) {
+  constexpr double kSame = 1e-9;  // of the half extent: far below any noise, above its rounding
+  const double same_m = kSame * reduced.scale;
   std::vector<std::size_t> numbers;
   numbers.reserve(reduced.points.size());
   for (const FitPoint& point : reduced.points) {
     const Vec2 place_m = world_m(reduced, point);
     const std::size_t next = numbers.empty() ? 0 : numbers.back() + 1;
-    const bool is_next = next < kept_m.size() && kept_m[next] == place_m;
+    const bool is_next = next < kept_m.size() && (kept_m[next] - place_m).norm() <= same_m;
     numbers.push_back(is_next ? next : nearest(kept_m, place_m));
   }
   return numbers;

@@ -108,8 +108,10 @@ Evidences integrated(Evidences evidences, const ClassFits& fits, const ClassFits
       evidences.rival.reset();
     } else if (evidences.rival) {
       // Laplace's formula would have all widths of the prior where the square of c alone is told.
-      evidences.rival = by_slices(*std::move(evidences.rival), points, evidences.inflation,
-                                  Slices::ForMass, work);
+      auto sliced = by_slices(*evidences.rival, points, evidences.inflation, Slices::ForMass, work);
+      if (sliced) {
+        evidences.rival = std::move(sliced);
+      }
     }
   }
   return evidences;

@@ -57,42 +57,24 @@ void add_prior_mode(CurveClass i, const ClassFits& fits, const FitData& reduced,
   }
 }
 
-/// A spline has nearly as much where its c is nothing as the semi-cubical parabola that it is
-/// there.
-void add_mode_at_cusp(const ClassFits& fits, const FitData& reduced, const Likelihood& likelihood,
-                      double best, Evidences* evidences, WorkBudget& work) {
-  constexpr double kMissing = 2.0;  // log odds: what c and the place may cost beside none
-  constexpr auto kCusp = CurveClass::SemiCubicalParabola;
-  constexpr auto kSpline = CurveClass::CubicSpline;
-  auto& spline = evidences->classes[kSpline];
-  const auto& cusp = evidences->classes[kCusp];
-  if (!spline || !cusp || !fits[kSpline] || !fits[kCusp] || !work.allows()) {
-    return;
-  }
-  const double of_cusp = log_evidence(likelihood, *evidences, *fits[kCusp]);
-  const double of_spline = log_evidence(likelihood, *evidences, *fits[kSpline]);
-  if (of_cusp > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
-    spline = with_mode_at_cusp(*std::move(spline), *cusp, points_of(*fits[kSpline], reduced), work);
-  }
-}
+using WithModeAtLimit = decltype(with_mode_at_cusp);
 
-/// The same beside the parabola, that it is there but for a third derivative.
-void add_mode_at_parabola(const ClassFits& fits, const FitData& reduced,
-                          const Likelihood& likelihood, double best, Evidences* evidences,
-                          WorkBudget& work) {
-  constexpr double kMissing = 2.0;  // log odds: what the third derivative may cost beside none
-  constexpr auto kParabola = CurveClass::Parabola;
+/// A spline has nearly as much beside one of its limits, where it is a semi-cubical parabola but
+/// for its c or a parabola but for a third derivative, as that has there.
+void add_mode_at(CurveClass limit, WithModeAtLimit* with_mode, const ClassFits& fits,
+                 const FitData& reduced, const Likelihood& likelihood, double best,
+                 Evidences* evidences, WorkBudget& work) {
+  constexpr double kMissing = 2.0;  // log odds: what c, or the derivative, may cost beside none
   constexpr auto kSpline = CurveClass::CubicSpline;
   auto& spline = evidences->classes[kSpline];
-  const auto& parabola = evidences->classes[kParabola];
-  if (!spline || !parabola || !fits[kSpline] || !fits[kParabola] || !work.allows()) {
+  const auto& at_limit = evidences->classes[limit];
+  if (!spline || !at_limit || !fits[kSpline] || !fits[limit] || !work.allows()) {
     return;
   }
-  const double of_parabola = log_evidence(likelihood, *evidences, *fits[kParabola]);
+  const double of_limit = log_evidence(likelihood, *evidences, *fits[limit]);
   const double of_spline = log_evidence(likelihood, *evidences, *fits[kSpline]);
-  if (of_parabola > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
-    spline = with_mode_at_parabola(*std::move(spline), *parabola,
-                                   points_of(*fits[kSpline], reduced), work);
+  if (of_limit > std::max(of_spline + kMissing, best - kUnseenLogOdds)) {
+    spline = with_mode(*std::move(spline), *at_limit, points_of(*fits[kSpline], reduced), work);
   }
 }
 
@@ -125,8 +107,10 @@ void add_prior_modes(const ClassFits& fits, const FitData& reduced, const Likeli
   if (!alone || (found && is_open(*found))) {
     add_prior_mode(best, fits, reduced, likelihood, highest, evidences, work);
   }
-  add_mode_at_cusp(fits, reduced, likelihood, highest, evidences, work);
-  add_mode_at_parabola(fits, reduced, likelihood, highest, evidences, work);
+  add_mode_at(CurveClass::SemiCubicalParabola, with_mode_at_cusp, fits, reduced, likelihood,
+              highest, evidences, work);
+  add_mode_at(CurveClass::Parabola, with_mode_at_parabola, fits, reduced, likelihood, highest,
+              evidences, work);
 }
 
 }  // namespace palpate

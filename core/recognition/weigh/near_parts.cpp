@@ -87,10 +87,10 @@ double log_evidence_scattered_near(const ClassFit& coarse, double least,
 }
 
 /// The same of parts whose deviation from the class is smooth: the more touches there are, the
-/// better they tell it from one that is another at each. Only where the noise is stated: what the
-/// class leaves would tell another one.
-double log_evidence_smoothly_near(const ClassFit& coarse, double least,
-                                  const EvidenceContext& context) {
+/// better they tell it from one that is another at each. nullopt where the noise is not stated
+/// (what the class leaves would tell another one), and where nothing tells such deviations.
+std::optional<double> log_evidence_smoothly_near(const ClassFit& coarse, double least,
+                                                 const EvidenceContext& context) {
   const FitData& reduced = points_of(coarse, context.reduced);
   const auto placed = context.likelihood.sigma_known && context.work.allows()
                           ? to_canonical(coarse, reduced)
@@ -99,27 +99,28 @@ double log_evidence_smoothly_near(const ClassFit& coarse, double least,
   const auto evidence =
       placed ? evidence_of(*placed, reduced, inflation, context.work) : std::nullopt;
   if (!evidence) {
-    return kNoEvidence;
+    return std::nullopt;
   }
   const double of_class = kLogOfTouches - 0.5 * chi2_of(*placed) / inflation + evidence->log_occam;
   const auto gain =
       log_gain_near_class(*placed, *evidence, reduced, context.likelihood, context.arcs.sigma, 0.0,
                           0.0, least - of_class, context.work);
-  return gain ? of_class + *gain : kNoEvidence;
+  return gain ? std::optional(of_class + *gain) : std::nullopt;
 }
 
 /// log of the evidence of touches' parts near any class. `least`: less is not computed. Deviations
-/// that are smooth and others are alike probable.
+/// that are smooth and others are alike probable, where both can be told.
 double log_evidence_of_touches(const ClassFits& coarse, double least,
                                const EvidenceContext& context) {
   double sum = kNoEvidence;
   for (const auto& fit : coarse) {
     if (fit && !fit->at_limit && std::isfinite(fit->chi2)) {
-      sum = log_add(sum, log_evidence_scattered_near(*fit, least, context));
-      sum = log_add(sum, log_evidence_smoothly_near(*fit, least, context));
+      const double scattered = log_evidence_scattered_near(*fit, least, context);
+      const auto smooth = log_evidence_smoothly_near(*fit, least, context);
+      sum = log_add(sum, smooth ? log_add(scattered, *smooth) - std::log(2.0) : scattered);
     }
   }
-  return sum - std::log(2.0);
+  return sum;
 }
 
 }  // namespace
