@@ -59,7 +59,8 @@ void Spool::take_up(const std::string& file) {
   std::error_code failed;
   segment.bytes = fs::file_size(file, failed);
   if (failed) return;
-  next_number_ = std::max(next_number_, (number / 2 + 1) * 2);
+  // Two above an odd number, so that add_before() does not need the same file again.
+  next_number_ = std::max(next_number_, ((number + 1) / 2 + 1) * 2);
   unread_ += segment.messages;
   bytes_ += segment.bytes;
   segments_[number] = segment;

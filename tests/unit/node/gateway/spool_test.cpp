@@ -146,6 +146,26 @@ TEST_F(SpoolTest, WhatIsKeptAtTheEndComesBeforeWhatWasAddedSince) {
   EXPECT_EQ(all_of(spool), numbers(20, 21));
 }
 
+TEST_F(SpoolTest, ASecondEndKeepsToo) {
+  {
+    Spool spool(folder_, kBound);
+    for (const std::string& number : numbers(0, 5)) {
+      spool.add_before(spool.next_segment(), "contact/f/", number);
+    }
+  }
+  {
+    Spool spool(folder_, kBound);
+    EXPECT_EQ(all_of(spool, false), numbers(0, 5));  // sent, but nobody said that it is stored
+    for (const std::string& number : numbers(5, 10)) {
+      spool.add_before(spool.next_segment(), "contact/f/", number);
+    }
+    EXPECT_EQ(spool.lost(), 0U);
+    EXPECT_EQ(spool.error(), "");
+  }
+  Spool spool(folder_, kBound);
+  EXPECT_EQ(all_of(spool), numbers(0, 10));
+}
+
 TEST_F(SpoolTest, WhatHasNoRoomAtTheEndIsCounted) {
   Spool spool(folder_, kBound);
   for (const std::string& number : numbers(0, 1000)) {
