@@ -33,6 +33,10 @@ bool ResultDecoder::has_room_for(std::string_view topic) {
 
 template <typename Message>
 bool ResultDecoder::is_fresh(const Message& message, std::string_view topic) {
+  if (!has_room_for(topic)) {
+    ++counters_.over_bound;
+    return false;
+  }
   const auto found = feeds_.find(topic);
   Feed& feed = found != feeds_.end() ? found->second : feeds_[std::string(topic)];
   feed.heard = now_;
@@ -54,10 +58,6 @@ ReceivedResult ResultDecoder::take(std::string_view text, std::string_view paylo
   ReceivedResult result;
   const std::optional<Topic> topic = parse_topic(text);
   now_ = now;
-  if (topic && !has_room_for(text)) {
-    ++counters_.over_bound;
-    return result;
-  }
   if (topic && topic->kind == TopicKind::Recognition && parse(recognition_, payload)) {
     if (!is_fresh(recognition_, text)) return result;
     Feed& feed = feeds_.find(text)->second;

@@ -52,5 +52,14 @@ TEST_F(ManyTopics, WhatIsStillRepeatedStaysKnown) {
   EXPECT_EQ(decoder_.counters().duplicates, kMost);
 }
 
+TEST_F(ManyTopics, WhatCannotBeReadTakesNoGroupsPlace) {
+  for (std::size_t i = 0; i < kMost; ++i) EXPECT_TRUE(is_news(std::to_string(i)));
+  now_ += seconds(60);
+  EXPECT_FALSE(decoder_.take(make_topic(TopicKind::Recognition, "another"), "nonsense", now_));
+  EXPECT_EQ(decoder_.groups().size(), kMost);
+  EXPECT_EQ(decoder_.counters().malformed, 1U);
+  EXPECT_EQ(decoder_.counters().over_bound, 0U);
+}
+
 }  // namespace
 }  // namespace palpate::client
