@@ -19,8 +19,12 @@ const Group::Member* Group::find_member(std::string_view probe) const {
 bool Group::is_stale_object(const ContactMessage& message, const Probe* probe,
                             SteadyTime now) const {
   if (members_.empty() || message.object == object_) return false;
-  const bool announces_change = probe != nullptr && probe->object && probe->group == name_ &&
-                                *probe->object != message.object;
+  // In the order of each group alone, the probe's latest message may be another group's.
+  const auto heard = heard_.find(message.probe);
+  const bool announces_change = heard != heard_.end()
+                                    ? heard->second.object != message.object
+                                    : probe != nullptr && probe->object && probe->group == name_ &&
+                                          *probe->object != message.object;
   if (announces_change) return false;
   return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
     return member.probe != message.probe && now - member.last_taken <= options_.object_takeover;
@@ -60,22 +64,29 @@ std::size_t Group::take(const ContactMessage& message, Continuity continuity, St
   return superseded;
 }
 
+bool Group::is_touched_only_by_others_than(std::string_view probe) const {
+  return !members_.empty() && find_member(probe) == nullptr;
+}
+
 bool Group::is_touched_by_others_than(std::string_view probe) const {
   return std::any_of(members_.begin(), members_.end(),
                      [&](const Member& member) { return member.probe != probe; });
 }
 
 const SequenceTracker* Group::sequence_of(std::string_view probe) const {
-  const auto found = sequences_.find(probe);
-  return found == sequences_.end() ? nullptr : &found->second;
+  const auto found = heard_.find(probe);
+  return found == heard_.end() ? nullptr : &found->second.sequence;
 }
 
 SequenceEvent Group::take_sequence(const ContactMessage& message) {
-  auto found = sequences_.find(message.probe);
-  if (found == sequences_.end()) {
-    found = sequences_.emplace(std::string(message.probe), SequenceTracker()).first;
-  }
-  return found->second.take(message.epoch, message.seq);
+  auto found = heard_.find(message.probe);
+  if (found == heard_.end()) found = heard_.emplace(std::string(message.probe), Heard()).first;
+  found->second.object = message.object;
+  return found->second.sequence.take(message.epoch, message.seq);
+}
+
+void Group::forget_probe(std::string_view probe) {
+  if (const auto found = heard_.find(probe); found != heard_.end()) heard_.erase(found);
 }
 
 std::shared_ptr<GroupRecognizer> Group::begin_work() {

@@ -75,11 +75,15 @@ class Group {
 
   /// Whether other probes than this one have touched the present object.
   bool is_touched_by_others_than(std::string_view probe) const;
+  /// Whether other probes have touched the present object, and this one has not.
+  bool is_touched_only_by_others_than(std::string_view probe) const;
 
   /// Of the probe's messages in this group, all objects of it, that take_sequence() was called for;
   /// nullptr if there are none.
   const SequenceTracker* sequence_of(std::string_view probe) const;
   SequenceEvent take_sequence(const ContactMessage& message);
+  /// Call it for a probe that the node knows no longer, so that the memory of probes is bounded.
+  void forget_probe(std::string_view probe);
 
   const std::string& name() const { return name_; }
   std::uint64_t object() const { return object_; }
@@ -90,6 +94,12 @@ class Group {
   struct Member {
     std::string probe;
     SteadyTime last_taken;
+  };
+
+  // Of a probe's messages in this group.
+  struct Heard {
+    SequenceTracker sequence;
+    std::uint64_t object = 0;  // of the latest one
   };
 
   bool is_stale_object(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
@@ -106,7 +116,7 @@ class Group {
   std::uint64_t object_ = 0;
   std::vector<Member> members_;  ///< empty = no object yet
   SteadyTime last_taken_;
-  std::map<std::string, SequenceTracker, std::less<>> sequences_;  // by probe
+  std::map<std::string, Heard, std::less<>> heard_;  // by probe
 };
 
 }  // namespace palpate

@@ -14,14 +14,15 @@ std::optional<GroupRegistry::Entries::const_iterator> GroupRegistry::place_for(
     std::string_view probe, SteadyTime now) const {
   auto idle = groups_.end();  // oldest of all
   auto own = groups_.end();   // oldest of those that this probe has opened and touches alone
-  std::size_t opened = 0;     // opened by this probe
+  std::size_t opened = 0;     // opened by this probe, and not taken over by others
   const auto older = [&](Entries::const_iterator entry, Entries::const_iterator than) {
     return than == groups_.end() ||
            entry->second.group.last_taken() < than->second.group.last_taken();
   };
   for (auto entry = groups_.begin(); entry != groups_.end(); ++entry) {
     const bool is_own = entry->second.opened_by == probe;
-    if (is_own) ++opened;
+    // What others have taken over is theirs: it cannot be given up for this probe's next one.
+    if (is_own && !entry->second.group.is_touched_only_by_others_than(probe)) ++opened;
     if (entry->second.group.is_in_work()) continue;  // cannot be evicted now
     if (older(entry, idle)) idle = entry;
     const bool is_shared = entry->second.group.is_touched_by_others_than(probe);

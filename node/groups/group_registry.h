@@ -18,7 +18,8 @@ namespace palpate {
 
 struct GroupBounds {
   std::size_t max_groups = 64;
-  std::size_t max_groups_per_probe = 8;  ///< that this probe has opened
+  /// That this probe has opened, without those whose present object only others touch.
+  std::size_t max_groups_per_probe = 8;
   /// Memory of the messages that wait for recognition, of all groups together. [bytes]
   std::size_t max_waiting_bytes = std::size_t{32} << 20;
   /// A group or probe that is silent for longer may be forgotten to make room.
@@ -50,6 +51,11 @@ class GroupRegistry {
     const std::size_t left =
         bounds_.max_waiting_bytes - std::min(bounds_.max_waiting_bytes, queued_bytes_);
     return (group == nullptr ? 0 : group->queued_bytes()) + bytes <= left;
+  }
+
+  /// Forgets what the groups know of the messages of a probe that the node has forgotten.
+  void forget_probe(std::string_view probe) {
+    for (auto& [name, entry] : groups_) entry.group.forget_probe(probe);
   }
 
   /// Queues an accepted message for the group.

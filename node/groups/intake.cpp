@@ -89,18 +89,20 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
   std::string evicted;
   if (probe == nullptr) {
     probe = &probes_.add(message.probe, now, evicted);
-    if (!evicted.empty()) forgotten_.probes.push_back(std::move(evicted));
+    if (!evicted.empty()) {
+      groups_.forget_probe(evicted);
+      forgotten_.probes.push_back(std::move(evicted));
+    }
   }
   if (group == nullptr) {
     group = &groups_.add(message.group, message.probe, now, evicted);
     if (!evicted.empty()) forgotten_.groups.push_back(std::move(evicted));
   }
   const SequenceEvent event = probe->sequence.take(message.epoch, message.seq);
-  Continuity continuity = continuity_of(event, probe->group == message.group);
-  if (sequence_by_group_) {
-    const SequenceEvent in_group = group->take_sequence(message);
-    if (!is_news(event)) continuity = continuity_of(in_group, /*same_group=*/true);
-  }
+  // In the order of each group alone, an answer must not depend on which group came first.
+  const Continuity continuity =
+      sequence_by_group_ ? continuity_of(group->take_sequence(message), /*same_group=*/true)
+                         : continuity_of(event, probe->group == message.group);
   groups_.take(*group, message, continuity, now);
 
   const std::size_t count = message.samples.size();

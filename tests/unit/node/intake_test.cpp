@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <map>
 #include <numeric>
 #include <string>
+#include <vector>
 
 #include "contact_messages.h"
 
@@ -169,9 +171,28 @@ TEST_F(IntakeTest, AGroupThatAnotherProbeHasTakenOverIsNotGivenUp) {
   now_ += seconds(60);
   give(intake, "heir", in_group("cup", 2, line_batch("heir", 1, 1)));
   give(intake, "opener", in_group("dish", 1, line_batch("opener", 1, 1)));
+  now_ += seconds(1);
   give(intake, "opener", in_group("bowl", 1, line_batch("opener", 1, 2)));
+  EXPECT_NE(intake.groups().find("dish"), nullptr);  // the cup is no longer the opener's
+  now_ += seconds(1);
+  give(intake, "opener", in_group("pan", 1, line_batch("opener", 1, 3)));
   EXPECT_NE(intake.groups().find("cup"), nullptr);
   EXPECT_EQ(intake.groups().find("dish"), nullptr);
+}
+
+TEST_F(IntakeTest, AProbeWhoseGroupsOthersHaveTakenOverMayOpenMore) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 2;
+  Intake intake(options);
+  std::uint64_t seq = 0;
+  for (const char* name : {"cup", "plate"}) {
+    give(intake, "opener", in_group(name, 1, line_batch("opener", 1, seq++)));
+  }
+  now_ += seconds(60);
+  give(intake, "heir", in_group("cup", 2, line_batch("heir", 1, 0)));
+  give(intake, "heir", in_group("plate", 2, line_batch("heir", 1, 1)));
+  EXPECT_EQ(give(intake, "opener", in_group("dish", 1, line_batch("opener", 1, seq++))), kTaken);
+  EXPECT_EQ(intake.groups().size(), 3U);
 }
 
 TEST_F(IntakeTest, GroupsMayBeReplayedOneAfterTheOther) {
@@ -193,6 +214,71 @@ TEST_F(IntakeTest, GroupsMayBeReplayedOneAfterTheOther) {
     EXPECT_EQ(give(intake, "p", in_group("plate", 2, line_batch("p", 1, 5))),
               v1::REJECT_REASON_SEQUENCE);
   }
+}
+
+TEST_F(IntakeTest, ContinuityDoesNotDependOnTheOrderOfTheGroups) {
+  IntakeOptions options;
+  options.sequence_by_group = true;
+  const std::map<std::string, std::vector<std::uint64_t>> numbers{{"cup", {0, 2, 4}},
+                                                                  {"plate", {1, 3, 5, 6}}};
+  const auto give_all = [&](Intake& intake, const std::string& group, std::uint64_t from,
+                            std::uint64_t to) {
+    for (const std::uint64_t seq : numbers.at(group)) {
+      if (seq < from || seq >= to) continue;
+      EXPECT_EQ(give(intake, "p", in_group(group, 1, line_batch("p", 1, seq))), kTaken);
+    }
+  };
+  const auto continuity_of_plate = [](Intake& intake) {
+    std::vector<Continuity> all;
+    intake.groups()
+        .begin_work(*intake.groups().find("plate"))
+        ->contacts.for_each([&](const QueuedContacts& message, const auto&, const auto&) {
+          all.push_back(message.continuity);
+        });
+    return all;
+  };
+  const std::vector<Continuity> expected{Continuity::Anew, Continuity::SamplesMissing,
+                                         Continuity::SamplesMissing, Continuity::Unbroken};
+  Intake late(options);
+  give_all(late, "cup", 0, 10);
+  give_all(late, "plate", 0, 10);
+  EXPECT_EQ(continuity_of_plate(late), expected);
+  Intake early(options);
+  give_all(early, "plate", 0, 10);
+  give_all(early, "cup", 0, 10);
+  EXPECT_EQ(continuity_of_plate(early), expected);
+  Intake as_sent(options);
+  for (std::uint64_t seq = 0; seq < 10; ++seq) {
+    give_all(as_sent, "cup", seq, seq + 1);
+    give_all(as_sent, "plate", seq, seq + 1);
+  }
+  EXPECT_EQ(continuity_of_plate(as_sent), expected);
+}
+
+TEST_F(IntakeTest, InTheOrderOfEachGroupAnObjectChangesAfterAnotherGroupsMessage) {
+  IntakeOptions options;
+  options.sequence_by_group = true;
+  Intake intake(options);
+  EXPECT_EQ(give(intake, "p", in_group("cup", 1, line_batch("p", 1, 0))), kTaken);
+  EXPECT_EQ(give(intake, "q", in_group("cup", 1, line_batch("q", 1, 0))), kTaken);
+  EXPECT_EQ(give(intake, "p", in_group("plate", 1, line_batch("p", 1, 2))), kTaken);
+  EXPECT_EQ(give(intake, "p", in_group("cup", 2, line_batch("p", 1, 1))), kTaken);
+  EXPECT_EQ(give(intake, "q", in_group("plate", 1, line_batch("q", 1, 2))), kTaken);
+  // Of the old object, and not p's word that it is back.
+  EXPECT_EQ(give(intake, "r", in_group("cup", 1, line_batch("r", 1, 0))),
+            v1::REJECT_REASON_STALE_OBJECT);
+}
+
+TEST_F(IntakeTest, AForgottenProbeIsForgottenByTheGroupsToo) {
+  IntakeOptions options;
+  options.sequence_by_group = true;
+  options.max_probes = 1;
+  Intake intake(options);
+  EXPECT_EQ(give(intake, "p", in_group("cup", 1, line_batch("p", 1, 0))), kTaken);
+  EXPECT_NE(intake.groups().find("cup")->sequence_of("p"), nullptr);
+  now_ += seconds(60);
+  EXPECT_EQ(give(intake, "q", in_group("cup", 2, line_batch("q", 1, 0))), kTaken);
+  EXPECT_EQ(intake.groups().find("cup")->sequence_of("p"), nullptr);
 }
 
 TEST_F(IntakeTest, ANewObjectForgetsTheOld) {
