@@ -79,15 +79,16 @@ bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatc
   header.set_source(found->first);
   header.set_epoch(epoch_);
   header.set_seq(state.next_seq++);
-  header.set_stamp_ns(unix_time_ns());
-  batch.SerializeToString(&buffer_);
-  while (!send_now(socket_, state.topic, buffer_)) {
+  for (;;) {
+    // Anew for each attempt: the time of waiting for room is not on the way.
+    header.set_stamp_ns(unix_time_ns());
+    batch.SerializeToString(&buffer_);
+    if (send_now(socket_, state.topic, buffer_)) return true;
     if (give_up()) return false;
     // An XPUB is always writable to a poll, so there is nothing to wait for but time.
     constexpr std::chrono::milliseconds kAgain{1};
     std::this_thread::sleep_for(kAgain);
   }
-  return true;
 }
 
 void ContactPublisher::finish_within(std::chrono::milliseconds longest) {
