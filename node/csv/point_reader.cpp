@@ -242,6 +242,8 @@ class PointReader {
                                                    "of 1970"));
     }
     row.sample.stamp_ns = std::llround(*parsed * unit);
+    // At the start itself a sample has a time: not the 0 that says that none is known.
+    if (row.sample.stamp_ns == 0) row.sample.stamp_ns = 1;
     return true;
   }
 

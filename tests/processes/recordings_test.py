@@ -175,6 +175,14 @@ class Replays(unittest.TestCase):
             for before, after in zip(stamps, stamps[1:]):
                 self.assertLessEqual(abs(after - before - 1_000_000), 1000)  # rounded as a double of nanoseconds
 
+    def test_a_first_sample_without_a_time_gets_none_and_waits_for_its_run(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "timed.csv"
+            path.write_text("x_m,y_m,time_s,group\n0,0,,late\n1,0,0.3,late\n2,0,0,early\n3,0,0.1,early\n")
+            samples = [sample for batch in self.replayed(path, "--batch", "1") for sample in batch.samples]
+            self.assertEqual([sample.x_m for sample in samples], [2, 3, 0, 1])
+            self.assertEqual([sample.stamp_ns == 0 for sample in samples], [False, False, True, False])
+
     def test_a_speed_that_is_no_number(self):
         for value in ("nan", "inf", "0", "-1", "fast"):
             code, _, err = run(TOOL, "replay", "absent", "--speed", value)

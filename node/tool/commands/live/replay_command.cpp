@@ -122,36 +122,44 @@ class SampleTimes {
   SampleTimes(const ContactTable& table, double rate_hz) : period_ns_(1e9 / rate_hz) {
     for (const ContactRow& row : table.rows) {
       const std::int64_t stamp_ns = row.sample.stamp_ns;
-      if (stamp_ns > 0 && (!is_stamped_ || stamp_ns < first_ns_)) first_ns_ = stamp_ns;
-      is_stamped_ |= stamp_ns > 0;
+      if (stamp_ns > 0 && (first_ns_ == 0 || stamp_ns < first_ns_)) first_ns_ = stamp_ns;
+      is_stamped_ |= stamp_ns > kStartNs;
     }
   }
 
-  /// A sample's stamp; 0 = not known. In a file without stamps the samples of a probe follow one
-  /// another at the rate.
+  /// Groups come one after the other, whatever their times: those of one say nothing of the next.
+  void begin_group() { due_ns_ = first_ns_; }
+
+  /// Until its first sample with a stamp, the samples of a run are due with that one. A run without
+  /// any is due with the one before it in the group.
+  void begin_run(const ContactRun& run) {
+    const auto stamped =
+        std::find_if(run.samples.begin(), run.samples.end(),
+                     [](const ContactSample& sample) { return sample.stamp_ns != 0; });
+    if (stamped != run.samples.end()) due_ns_ = stamped->stamp_ns;
+  }
+
+  /// The stamp of a run's next sample; 0 = not known. In a file without stamps the samples of a
+  /// probe follow one another at the rate.
   std::int64_t stamp_ns(const std::string& probe, const ContactSample& sample) {
-    // No Unix time of a measurement lies before 2001, so such times count from a start of their
-    // own.
-    constexpr std::int64_t kUnixNs = 1'000'000'000'000'000'000;
-    auto [found, is_first] = latest_ns_.try_emplace(probe, is_stamped_ ? first_ns_ : 0);
     if (!is_stamped_) {
-      return found->second = std::llround(period_ns_ * static_cast<double>(++taken_[probe]));
+      return due_ns_ = std::llround(period_ns_ * static_cast<double>(++taken_[probe]));
     }
-    std::int64_t stamp = sample.stamp_ns;
-    // At the start itself a sample has a time: not the 0 that says that none is known.
-    if (stamp == 0 && is_first && first_ns_ < kUnixNs) stamp = 1;
-    if (stamp != 0) found->second = stamp;
-    return stamp;
+    if (sample.stamp_ns != 0) due_ns_ = sample.stamp_ns;
+    return sample.stamp_ns;
   }
 
-  /// When the latest sample of the probe is due; one without a stamp, with the one before.
-  std::int64_t due_ns(const std::string& probe) const { return latest_ns_.at(probe); }
+  /// When the latest sample is due; one without a stamp, with the one before.
+  std::int64_t due_ns() const { return due_ns_; }
 
  private:
+  // A time of 0, as it is read. A file with no other has no times.
+  static constexpr std::int64_t kStartNs = 1;
+
   double period_ns_;
   bool is_stamped_ = false;
   std::int64_t first_ns_ = 0;  ///< the least of the stamps
-  std::map<std::string, std::int64_t> latest_ns_;
+  std::int64_t due_ns_ = 0;
   std::map<std::string, std::int64_t> taken_;
 };
 
@@ -168,7 +176,9 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
   SampleTimes times(*table, command.rate_hz);
   std::vector<TimedMessage> messages;
   for (const ContactGroup& group : contact_groups(command.file, *table)) {
+    times.begin_group();
     for (const ContactRun& run : group.runs) {
+      times.begin_run(run);
       const std::string& probe = group.probes[run.context.probe];
       for (std::size_t i = 0; i < run.samples.size(); ++i) {
         if (i % command.batch_samples == 0) {
@@ -187,7 +197,7 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
         to.set_sigma_m(from.sigma_m > 0.0 ? from.sigma_m : command.sigma_m);
         if (!run.details.empty()) to_wire(run.details[i], to);
         to.set_stamp_ns(times.stamp_ns(probe, from));
-        messages.back().due_ns = times.due_ns(probe);
+        messages.back().due_ns = times.due_ns();
       }
     }
   }
@@ -341,12 +351,14 @@ int run(const ReplayCommand& command) {
           objects.try_emplace(message.batch.object(), first_object + objects.size());
       message.batch.set_object(number.first->second);
     }
+    const bool is_taken = publish(command, message, stop_fd, publisher);
+    // What a stop keeps from waiting for room is like all that comes after it: not replayed.
+    is_stopped = !is_taken && command.fast && stop_requested(stop_fd);
+    if (is_stopped) break;
     ++messages;
     samples += static_cast<std::uint64_t>(message.batch.samples_size());
-    const bool is_taken = publish(command, message, stop_fd, publisher);
-    is_stopped = !is_taken && stop_requested(stop_fd);
     refused += is_taken ? 0 : 1;
-    if (is_stopped || (!is_taken && command.fast)) break;
+    if (!is_taken && command.fast) break;
     progress.tell([&] {
       return command.file + ": " + std::to_string(messages) + " messages, " +
              std::to_string(samples) + " samples";
