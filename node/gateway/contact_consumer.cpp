@@ -52,6 +52,8 @@ void ContactConsumer::begin() {
     if (const auto found = answer->find("ack_floor"); found != answer->end()) {
       floor = found->value("stream_seq", std::uint64_t{0});
     }
+    if (error != answer->end() || floor < floor_) events_.anew();
+    floor_ = floor;
     plant_.api(this, "CONSUMER.DELETE." + consumer, nullptr, [this, floor](const json* deleted) {
       if (deleted == nullptr) return events_.failed("its consumer cannot be replaced");
       make(floor + 1);

@@ -16,6 +16,9 @@ class ContactConsumer {
  public:
   struct Events {
     std::function<void(const PlantMessage& contact, std::uint64_t stream_seq)> contact;
+    /// The previous consumer is gone, or another one that is behind it has its name: what is known
+    /// of contacts by their numbers may be of another stream's.
+    std::function<void()> anew;
     /// No further contacts arrive until forget() and begin().
     std::function<void(const std::string& why)> failed;
   };
@@ -54,6 +57,7 @@ class ContactConsumer {
   std::uint64_t consumer_seq_ = 0;  // of the last message delivered, counted by the consumer
   std::uint64_t stream_seq_ = 0;    // the same, counted by the stream
   SteadyTime heard_;
+  std::uint64_t floor_ = 0;          // of the previous consumer, when this one began
   std::deque<Delivered> delivered_;  // not acknowledged, in the stream's order
   std::string ack_reply_;            // of the last contact that may be acknowledged
 };

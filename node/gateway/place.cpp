@@ -60,7 +60,7 @@ Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptio
       consumer_(
           plant, name_,
           {[this](const PlantMessage& message, std::uint64_t seq) { take_contact(message, seq); },
-           [this](const std::string& why) { fail(why); }}),
+           [this] { forget_contacts(); }, [this](const std::string& why) { fail(why); }}),
       begin_at_(begin_at) {
   status_.set_cell(name_.cell);
   status_.set_partition(name_.partition);
@@ -92,7 +92,7 @@ void Place::forget_all() {
   plant_.forget(this);
   consumer_.forget();
   node_.reset();
-  node_has_spoken_ = false;
+  node_has_spoken_ = has_contact_ = false;
   ready_.clear();
   given_.clear();
   given_count_ = in_flight_count_ = in_flight_bytes_ = 0;
@@ -112,6 +112,10 @@ void Place::begin_anew() {
 }
 
 void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) {
+  // Of the contacts before the first one none comes again: they are done, or the stream has lost
+  // them at its limit.
+  if (!has_contact_) counted_.erase(counted_.begin(), counted_.lower_bound(stream_seq));
+  has_contact_ = true;
   if (refused_.contains(stream_seq)) return consumer_.done(stream_seq);
   std::optional<GroupContact> read;
   if (message.payload().size() <= node_options_.max_message_bytes) {
@@ -212,6 +216,13 @@ void Place::add_new(Group& group, FedContact contact) {
   group.unanswered.push_back(contact.stream_seq);
   group.feed.add(std::move(contact));
   make_ready(group);
+}
+
+/// A stream that was made again counts from 1: a contact of it may have the number of one that was
+/// refused.
+void Place::forget_contacts() {
+  counted_.clear();
+  refused_.clear();
 }
 
 void Place::refuse(std::uint64_t stream_seq) {
@@ -374,9 +385,15 @@ void Place::stored(const std::string& name, const Stored& stored) {
       break;
   }
   while (!group.unanswered.empty() && group.unanswered.front() <= span.through) {
-    counted_.erase(group.unanswered.front());
-    consumer_.done(group.unanswered.front());
+    const std::uint64_t seq = group.unanswered.front();
     group.unanswered.pop_front();
+    if (stored.verdict ==
+        Stored::Verdict::TooLong) {  // it has no answer, also where it comes again
+      refuse(seq);
+      continue;
+    }
+    counted_.erase(seq);
+    consumer_.done(seq);
   }
   group.answers.pop_front();
   group.is_first_sent = false;

@@ -93,6 +93,7 @@ class Place {
   void add_new(Group& group, FedContact contact);
 
   // Each contact is counted once, however often it is delivered.
+  void forget_contacts();
   void refuse(std::uint64_t stream_seq);
   void answered_before(std::uint64_t stream_seq);
 
@@ -114,12 +115,14 @@ class Place {
   FedNodeOptions node_options_;
   ContactConsumer consumer_;
   v1::GatewayPlaceStatus status_;
+  // By their numbers in the stream, as long as it is known to be the same one.
   std::set<std::uint64_t> counted_;  // contacts that have neither an answer nor a refusal yet
   std::set<std::uint64_t> refused_;  // the latest ones: rejected by the node, or hostile
 
   // State that is discarded when the place begins anew.
   std::unique_ptr<FedNode> node_;
   bool node_has_spoken_ = false;
+  bool has_contact_ = false;
   SteadyTime node_heard_;
   std::map<std::string, Group, std::less<>> groups_;
   std::deque<Group*> ready_;
