@@ -19,6 +19,8 @@ using std::chrono::milliseconds;
 // Longest poll, for work that depends on time; everything else wakes the poll at once.
 constexpr milliseconds kTick{20};
 constexpr milliseconds kStatusPeriod{1000};
+// How long the plant may take at the end to confirm what it has been sent.
+constexpr milliseconds kLongestEnd{1000};
 // Owners announce a place on "palpate.<cell>.place", with the partition behind it if there is one.
 constexpr const char* kPlaceKind = "place";
 
@@ -81,8 +83,21 @@ void Gateway::run(int stop_fd) {
     service_manager_.alive(now);
   }
   service_manager_.stopping();
+  send_rest();
   keep_unsent();
   places_.clear();
+}
+
+/// What the plant confirms now is stored once, however late this gateway is started again.
+void Gateway::send_rest() {
+  if (!up_) return;
+  const SteadyTime end = now_steady() + kLongestEnd;
+  for (SteadyTime now = now_steady(); now < end; now = now_steady()) {
+    serve_plant(now);
+    if (!plant_.is_connected() || up_->send_rest(now)) return;
+    std::vector<zmq::pollitem_t> items{{nullptr, plant_.connection().fd(), ZMQ_POLLIN, 0}};
+    poll(items, static_cast<int>(kTick.count()));
+  }
 }
 
 void Gateway::keep_unsent() {

@@ -44,6 +44,7 @@ class Gateway {
   void tell(SteadyTime now);
   void publish_status();
   void log_changes();
+  void send_rest();
   void keep_unsent();
 
   GatewayOptions options_;

@@ -96,6 +96,11 @@ void Upward::take(const TwoFrames& message, SteadyTime now) {
   }
 }
 
+bool Upward::send_rest(SteadyTime now) {
+  outbox_.tend(now);
+  return outbox_.size() == 0;
+}
+
 void Upward::keep_unsent() {
   // What was read from a segment is still in it: it is deleted when all of it is stored.
   for (const Outgoing& message : outbox_.take_all()) {

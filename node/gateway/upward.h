@@ -39,8 +39,12 @@ class Upward {
   /// times a second. Returns true if more waits.
   bool serve(SteadyTime now);
 
+  /// For the end: receives nothing more, and sends what is in memory. True if all of it is stored.
+  bool send_rest(SteadyTime now);
+
   /// Writes to disk what the plant has not confirmed, for the next process; call it at the end.
-  /// What the plant has stored all the same, it knows by its id.
+  /// What the plant has stored all the same, it knows by its id, for as long as it remembers ids
+  /// (duplicate_window_s). If the next process starts later, it is stored twice.
   void keep_unsent();
 
   /// Why the cell's node refuses this gateway; empty if it does not.
