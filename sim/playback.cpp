@@ -62,13 +62,15 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
     const double give_up_s = paced ? 0.0 : longest_wait_s;
     const bool taken =
         publish(probes[timed.probe].name, timed.batch, give_up_s, stop_fd, publisher);
+    // What a stop keeps from waiting for room is like all that comes after it: not played.
+    if (!taken && !paced && wait_or_stop(0.0, stop_fd)) {
+      counts.stopped = true;
+      break;
+    }
     counts.refused += taken ? 0 : 1;
     ++counts.messages;
     counts.samples += static_cast<std::uint64_t>(timed.batch.samples_size());
-    if (!taken && !paced) {
-      counts.stopped = wait_or_stop(0.0, stop_fd);
-      break;
-    }
+    if (!taken && !paced) break;
   }
   return counts;
 }

@@ -19,7 +19,7 @@ class FullQueue(unittest.TestCase):
         socket.setsockopt(zmq.RCVHWM, 10)
         socket.setsockopt(zmq.LINGER, 0)
         socket.setsockopt_string(zmq.SUBSCRIBE, "contact/")
-        socket.bind(bus.contacts)
+        socket.bind(command[command.index("--contacts") + 1])
         process = bus.start(*command, stderr=subprocess.PIPE)
         start = time.monotonic()
         while process.poll() is None:
@@ -56,6 +56,10 @@ class FullQueue(unittest.TestCase):
                 "--repeat", MESSAGES, "--quiet")
             self.assertEqual(code, 1, err)
             self.assertIn("1 message not taken", err)
+            code, err = self.said_to_a_recognizer_that_never_reads(
+                bus, SIM, SCENE, "--contacts", f"ipc://{bus.folder}/other", "--fast", "--wait", "60", "--pause", "0",
+                "--repeat", MESSAGES, "--quiet", stopped_after=3)
+            self.assertEqual(code, 0, err)
 
 
 if __name__ == "__main__":
