@@ -4,7 +4,7 @@ import time
 import unittest
 
 from bus import Bus, Probe, memory_kb, stop
-from palpate.v1 import contact_pb2
+from palpate.v1 import contact_pb2, gateway_status_pb2
 from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
 
 HOSTILE = 3000
@@ -64,6 +64,41 @@ class Hostile(unittest.TestCase):
                 self.assertIsNone(down.poll())
                 self.assertLess(growth_kb, MOST_GROWTH_KB)
                 self.assertEqual(stop(down)[0], 0)
+
+    def test_a_stream_that_is_made_again(self):
+        """Its contacts have the numbers of others, which were refused."""
+        refused = 3
+        with Bus() as bus, Servers(bus.folder, partitions=1) as servers:
+            servers.start().wait()
+            recogniser(bus, servers.url, "down", ["press:0"])
+            with Client(servers.url) as client:
+                def place():
+                    places = gateway_status(client, "press", "down").places
+                    return places[0] if places else gateway_status_pb2.GatewayPlaceStatus()
+
+                def publish(payload, seq):
+                    answer = client.request("palpate.press.contact.hand.finger", payload, {"Nats-Msg-Id": f"finger/1/{seq}"})
+                    self.assertIn(b'"seq"', answer.payload)
+
+                def wait_until(is_so):
+                    deadline = time.monotonic() + 20
+                    while not is_so(place()):
+                        self.assertLess(time.monotonic(), deadline, place())
+
+                wait_until(lambda said: said.cell)
+                while "error" in client.api("STREAM.INFO.palpate-press-contact"):
+                    time.sleep(0.05)
+                for seq in range(refused):
+                    publish(b"nonsense", seq)
+                wait_until(lambda said: said.hostile == refused)
+                config = client.api("STREAM.INFO.palpate-press-contact")["config"]
+                client.api("STREAM.DELETE.palpate-press-contact")
+                self.assertNotIn("error", client.api("STREAM.CREATE.palpate-press-contact", config))
+                honest = Probe(None, "finger", "hand")
+                for seq in range(refused):
+                    publish(honest.batch(10 * seq).SerializeToString(), seq)
+                wait_until(lambda said: said.answered == refused)
+                self.assertEqual(place().contacts, refused)
 
     def token(self, rng):
         return rng.choice(["a", "=2E", "=2e", "=", "=41", "%", "a=2", "\\", "'", "x" * 200, "=00", "\u00e4"])
