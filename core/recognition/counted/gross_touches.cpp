@@ -84,10 +84,8 @@ bool is_told(const Left& left) {
 
 std::optional<FitData> without_gross_touches(const Weighing& weighing, const FitData& data,
                                              WorkBudget& work) {
-  const bool all_lone = std::all_of(data.patches.begin(), data.patches.end(),
-                                    [](const PatchSpan& patch) { return patch.size() == 1; });
   const std::size_t n = data.points.size();
-  if (!all_lone || weighing.reduced.points.size() != n) {
+  if (!all_lie_apart(data) || weighing.reduced.points.size() != n) {
     return std::nullopt;
   }
   Indices all(n);

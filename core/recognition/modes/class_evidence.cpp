@@ -78,7 +78,7 @@ void take_prior_modes(const ClassEvidence& path, const FitData& data, double lea
   bool further = false;
   const double half_chi2 = 0.5 * evidence->fitted_chi2;
   std::vector<ArmMass> of_arms;
-  double best = -std::numeric_limits<double>::infinity();
+  double best = kNoMass;
   if (!evidence->nodes.empty()) {
     best = log_mass(evidence->nodes[evidence->mode].curve);
     const TouchedCurve& mode = evidence->nodes[evidence->mode].curve;

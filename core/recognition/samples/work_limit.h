@@ -10,9 +10,9 @@
 namespace palpate {
 
 /// All that an answer may take, over the work of a clean ellipse. A planner can wait for eight, by
-/// the clock. An answer that is cut has spent six of these, and takes up to a third longer than
-/// its count says (`bench_worst_case`). Strokes that go there and back six times, with a noise that
-/// nobody states, take up to six, and are recognised (habits_test); half a one is for the
+/// the clock. An answer that is cut has spent six of these, and takes up to six tenths longer
+/// than its count says (`bench_worst_case`). Strokes that go there and back six times, with a noise
+/// that nobody states, take up to six, and are recognised (habits_test); half a one is for the
 /// covariance (recognizer.cpp).
 inline constexpr double kMostWork = 7.5;
 
