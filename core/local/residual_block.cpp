@@ -23,7 +23,8 @@ constexpr double kLengthRounding = 16.0;
 
 /// Abscissae and ordinates in a frame along the samples in use, from the mean of their first half
 /// to the mean of their second half. For a window that hardly bends this is the principal axis too.
-LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const std::uint8_t> use) {
+LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const std::uint8_t> use,
+                                 std::span<const RelativeNoise> noise) {
   const auto is_used = [&](std::size_t i) { return use.empty() || use[i] != 0; };
   size_ = samples.size();
   const auto used =
@@ -69,6 +70,7 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
   backtrack_m_ = 0.0;
   std::array<double, 2> begin{};
   std::array<double, 2> end{};
+  loudest_ = noise.empty() ? 1.0 : 0.0;
   next = 0;
   for (std::size_t i = 0; i < lanes_.size() * kWidth; ++i) {
     const std::size_t sample = std::min(i, size_ - 1);
@@ -79,7 +81,10 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
     lane.u[k] = u;
     lane.residual_m[k] = cross(axis, d);
     lane.use[k] = i < size_ && is_used(i) ? 1.0 : 0.0;
+    lane.precision[k] = noise.empty() ? 1.0 : 1.0 / noise[sample].across;
+    lane.weight[k] = lane.use[k] * lane.precision[k] * lane.precision[k];
     if (i < size_ && is_used(i)) {
+      loudest_ = noise.empty() ? loudest_ : std::max(loudest_, noise[i].larger());
       lowest = std::min(lowest, u);
       highest = std::max(highest, u);
       backtrack_m_ = std::max(backtrack_m_, highest - u);
@@ -103,8 +108,8 @@ LocalStatus ResidualBlock::place(std::span<const Vec2> samples, std::span<const 
 }
 
 LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const std::uint8_t> use,
-                               int degree) {
-  const LocalStatus status = place(samples, use);
+                               int degree, std::span<const RelativeNoise> noise) {
+  const LocalStatus status = place(samples, use, noise);
   if (status != LocalStatus::Ok) {
     return status;
   }
@@ -120,9 +125,9 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
     lane.d_before.setZero();
     lane.slope.setZero();
     lane.leverage.setZero();
-    squares += lane.use;
-    scores += lane.use * lane.residual_m;
-    shifts += lane.use * lane.u;
+    squares += lane.weight;
+    scores += lane.weight * lane.residual_m;
+    shifts += lane.weight * lane.u;
   }
   double square_before = 0.0;
   for (int k = 0; k <= degree; ++k) {
@@ -150,7 +155,7 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
       lane.d_before = lane.d;
       lane.p = p;
       lane.d = d;
-      const Pair weighted = lane.use * p;
+      const Pair weighted = lane.weight * p;
       squares += weighted * p;
       scores += weighted * lane.residual_m;
       shifts += weighted * p * lane.u;
@@ -159,14 +164,16 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
   const double per_metre = 2.0 / extent_m_;
   Pair steepest = Pair::Zero();
   Pair largest = Pair::Zero();
+  const double most_leverage = kMaxExtrapolation * loudest_ * loudest_;
   for (Lane& lane : lanes_) {
     const Pair slope = per_metre * lane.slope;
     lane.residual_m /= (1.0 + slope.square()).sqrt();
     // 1 - h in use, 1 + h otherwise.
-    const Pair freedom = 1.0 + lane.leverage * (1.0 - 2.0 * lane.use);
+    const Pair freedom = 1.0 + lane.precision.square() * lane.leverage * (1.0 - 2.0 * lane.use);
     lane.studentised_m =
-        (freedom < kMinFreedom).select(0.0, lane.residual_m / freedom.max(kMinFreedom).sqrt());
-    lane.studentised_m = (lane.use == 0.0 && lane.leverage > kMaxExtrapolation)
+        (freedom < kMinFreedom)
+            .select(0.0, lane.precision * lane.residual_m / freedom.max(kMinFreedom).sqrt());
+    lane.studentised_m = (lane.use == 0.0 && lane.leverage > most_leverage)
                              .select(std::numeric_limits<double>::infinity(), lane.studentised_m);
     steepest = steepest.max(lane.use * slope.abs());
     largest = largest.max(lane.studentised_m.abs());

@@ -273,7 +273,7 @@ SegmentBelonging longest_segment(const StoredPatch& patch, double sigma_m) {
   SegmentBelonging result;
   constexpr double kFalseSpikes = 0.01;  // probability that a patch without spikes loses a sample
   WorkBudget unbounded;
-  const std::vector<bool> is_spike = spikes_of(patch.samples, kFalseSpikes, unbounded);
+  const std::vector<bool> is_spike = spikes_of(patch, sigma_m, kFalseSpikes, unbounded);
   StoredPatch kept = without_spikes(patch, is_spike);
   std::vector<std::size_t> numbers;  // of the samples kept
   for (std::size_t i = 0; i < is_spike.size(); ++i) {

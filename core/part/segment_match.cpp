@@ -24,11 +24,11 @@ struct Despiked {
   std::vector<std::vector<bool>> is_spike;
 };
 
-Despiked despiked(std::span<const StoredPatch> patches, double false_alarm) {
+Despiked despiked(std::span<const StoredPatch> patches, double sigma_m, double false_alarm) {
   Despiked clean;
   for (const StoredPatch& patch : patches) {
     WorkBudget unbounded;
-    clean.is_spike.push_back(spikes_of(patch.samples, false_alarm, unbounded));
+    clean.is_spike.push_back(spikes_of(patch, sigma_m, false_alarm, unbounded));
     clean.patches.push_back(without_spikes(patch, clean.is_spike.back()));
   }
   return clean;
@@ -82,7 +82,7 @@ class Match {
       : part_(part),
         given_(patches),
         options_(options),
-        clean_(despiked(patches, spike_probability(patches, options))) {
+        clean_(despiked(patches, options.sigma_m, spike_probability(patches, options))) {
     smooth();
     if (take_back_spikes()) {
       smooth();

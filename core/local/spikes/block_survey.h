@@ -25,6 +25,23 @@ struct CuspEnds {
   }
 };
 
+/// The samples among which spikes are sought, in their order on the stroke.
+struct SearchedSamples {
+  std::span<const Vec2> positions_m;
+  std::span<const RelativeNoise> noise = {};  ///< by sample; empty: 1
+  /// Which a fit starts from; the others are only compared with it. Empty: all.
+  std::span<const std::uint8_t> on_path = {};
+
+  std::size_t size() const { return positions_m.size(); }
+  bool is_on_path(std::size_t i) const { return on_path.empty() || on_path[i] != 0; }
+  RelativeNoise noise_of(std::size_t i) const { return noise.empty() ? RelativeNoise{} : noise[i]; }
+
+  SearchedSamples part(std::size_t start, std::size_t count) const {
+    return {positions_m.subspan(start, count), noise.empty() ? noise : noise.subspan(start, count),
+            on_path.empty() ? on_path : on_path.subspan(start, count)};
+  }
+};
+
 struct BlockSurvey {
   LocalStatus status = LocalStatus::TooFewSamples;
   std::size_t length = 0;   ///< number of samples of a block
@@ -37,21 +54,12 @@ struct BlockSurvey {
 };
 
 /// Fits blocks of 16 samples, or of 32, 64 ... if those span less than 20 sigma. `sigma_m`: 0 =
-/// unknown. A sample whose residual exceeds `threshold` standard deviations is off. Through the
-/// samples whose `on_path` is set (empty: all); the others are only compared with the fits.
-BlockSurvey survey_blocks(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          double sigma_m, double threshold, const CuspEnds& cusps,
-                          WorkBudget& work);
+/// unknown. A sample whose residual exceeds `threshold` standard deviations is off.
+BlockSurvey survey_blocks(const SearchedSamples& samples, double sigma_m, double threshold,
+                          const CuspEnds& cusps, WorkBudget& work);
 
-/// The part of flags for `count` samples from `start` on; of no flags, none.
-inline std::span<const std::uint8_t> flags_of(std::span<const std::uint8_t> flags,
-                                              std::size_t start, std::size_t count) {
-  return flags.empty() ? flags : flags.subspan(start, count);
-}
-
-/// The residual beyond which a sample is off its block's quartic. It allows for noise, and for form
-/// that no quartic can follow. [m]
-double residual_limit(const ResidualBlock& block, double sigma_m, double threshold, bool at_cusp);
+/// What form leaves of a block's quartic, counted as noise. [m]
+double form_noise_m(const ResidualBlock& block, bool at_cusp);
 
 /// Whether a sample in use lies farther behind an earlier one than noise explains.
 bool turns_back(const ResidualBlock& block, double sigma_m);

@@ -48,7 +48,10 @@ void LeastMedianParabola::try_curve(double curve, std::size_t half, double* best
 
 /// In the frame of the chord from sample a to sample c, the parabola through them and b is y =
 /// curve * x (x - length). The distance of a sample from it is |y - curve * x (x - length)|.
-bool LeastMedianParabola::fit(std::span<const Vec2> samples) {
+bool LeastMedianParabola::fit(std::span<const Vec2> samples, std::span<const RelativeNoise> noise) {
+  const auto precision_of = [&](std::size_t i) {
+    return noise.empty() ? 1.0 : 1.0 / noise[i].across;
+  };
   const std::size_t n = samples.size();
   const std::size_t half = n / 2;
   const std::size_t third = (n + 2) / 3;
@@ -69,12 +72,14 @@ bool LeastMedianParabola::fit(std::span<const Vec2> samples) {
       for (std::size_t i = 0; i < n; ++i) {
         const Vec2 d = samples[i] - samples[a];
         const double x = axis.dot(d);
-        across_[i] = cross(axis, d);
-        product_[i] = x * (x - length);
+        const double precision = precision_of(i);
+        across_[i] = precision * cross(axis, d);
+        product_[i] = precision * x * (x - length);
       }
       for (std::size_t b = third; b < n - third; b += step) {
         // x (x - length) <= -share (1 - share) length^2: b lies between a and c.
-        if (!(product_[b] <= -kLeastShare * (1.0 - kLeastShare) * length * length)) {
+        if (!(product_[b] <=
+              -kLeastShare * (1.0 - kLeastShare) * length * length * precision_of(b))) {
           continue;
         }
         const double curve = across_[b] / product_[b];

@@ -75,25 +75,23 @@ std::size_t beyond_form(Flag use, const Flag end, Flag jump) {
 
 class Search {
  public:
-  Search(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-         const BlockSurvey& survey, double threshold, const CuspEnds& cusps, WorkBudget& work)
+  Search(const SearchedSamples& samples, const BlockSurvey& survey, double threshold,
+         const CuspEnds& cusps, WorkBudget& work)
       : samples_(samples),
-        on_path_(on_path),
         doubtful_(survey.doubtful),
-        jumps_(jumps_of(samples)),
+        jumps_(jumps_of(samples.positions_m)),
         threshold_(threshold),
         length_(survey.length),
         sigma_m_(survey.sigma_m),
         cusps_(cusps),
         work_(work) {
-    for_each_block(samples.size(), length_, std::max<std::size_t>(length_ / 4, 1),
-                   [&](std::size_t start) {
-                     const auto doubtful = flags_of(doubtful_, start, length_);
-                     if (doubtful.empty() || std::ranges::count(doubtful, 1) > 0) {
-                       blocks_.emplace_back();
-                       blocks_.back().start = start;
-                     }
-                   });
+    for_each_block(
+        samples.size(), length_, std::max<std::size_t>(length_ / 4, 1), [&](std::size_t start) {
+          if (doubtful_.empty() || std::ranges::count(doubtful_.subspan(start, length_), 1) > 0) {
+            blocks_.emplace_back();
+            blocks_.back().start = start;
+          }
+        });
     settle_blocks();
   }
 
@@ -141,9 +139,7 @@ class Search {
     bool is_spike = false;
   };
 
-  std::span<const Vec2> part(const Block& block) const {
-    return samples_.subspan(block.start, length_);
-  }
+  SearchedSamples part(const Block& block) const { return samples_.part(block.start, length_); }
 
   /// A quartic; a cubic if more than a quarter is removed: too few samples do not hold the ends of
   /// a quartic, which then bend to a spike.
@@ -152,15 +148,16 @@ class Search {
     work_.spend(WorkKind::SpikeRow, length_);
     const auto used = static_cast<std::size_t>(std::ranges::count(block.use, 1));
     const int degree = 4 * used >= 3 * length_ ? ResidualBlock::kDegree : kDegreeOfFew;
-    return residuals_.fit(part(block), block.use, degree);
+    const SearchedSamples samples = part(block);
+    return residuals_.fit(samples.positions_m, block.use, degree, samples.noise);
   }
 
   /// Starts from the samples on the path; if too many would leave, from the half that lies nearest
   /// to a parabola.
   void settle_blocks() {
     for (Block& block : blocks_) {
-      const std::span<const std::uint8_t> on_path = flags_of(on_path_, block.start, length_);
-      block.use.assign(on_path.begin(), on_path.end());
+      const SearchedSamples samples = part(block);
+      block.use.assign(samples.on_path.begin(), samples.on_path.end());
       block.use.resize(length_, 1);
       block.is_settled = false;
       if (!work_.allows()) {
@@ -171,7 +168,7 @@ class Search {
         continue;
       }
       work_.spend(WorkKind::SpikeRow, block.half.empty() ? kRowsOfParabola * length_ : 0);
-      if (block.half.empty() && parabola_.fit(part(block))) {
+      if (block.half.empty() && parabola_.fit(samples.positions_m, samples.noise)) {
         const auto half = parabola_.nearer_half();
         block.half.assign(half.begin(), half.end());
       }
@@ -180,6 +177,12 @@ class Search {
         block.is_settled = settle(&block, length_);
       }
     }
+  }
+
+  /// The residual beyond which a sample is off its block's quartic. It allows for noise, and for
+  /// form that no quartic can follow, which is as large where noise is low. [m]
+  double limit_m(const Block& block, std::size_t i, double form_m) const {
+    return threshold_ * std::max(sigma_m_, form_m / samples_.noise_of(block.start + i).across);
   }
 
   /// The worst sample leaves until none is off; then those that are not off join. Returns false if
@@ -196,12 +199,13 @@ class Search {
       if (left > most_leave || fit(*block) != LocalStatus::Ok) {
         return false;
       }
-      const double limit = residual_limit(residuals_, sigma_m_, threshold_, at_cusp);
+      const double form_m = form_noise_m(residuals_, at_cusp);
       std::size_t worst = length_;
-      double largest = limit;
+      double largest = 1.0;
       for (std::size_t i = 0; i < length_; ++i) {
-        if (block->use[i] != 0 && std::abs(residuals_.studentised(i)) > largest) {
-          largest = std::abs(residuals_.studentised(i));
+        const double size = std::abs(residuals_.studentised(i)) / limit_m(*block, i, form_m);
+        if (block->use[i] != 0 && size > largest) {
+          largest = size;
           worst = i;
         }
       }
@@ -212,7 +216,8 @@ class Search {
       }
       bool any = false;
       for (std::size_t i = 0; i < length_ && returns < kMostReturns; ++i) {
-        if (block->use[i] == 0 && std::abs(residuals_.studentised(i)) <= limit) {
+        if (block->use[i] == 0 &&
+            std::abs(residuals_.studentised(i)) <= limit_m(*block, i, form_m)) {
           block->use[i] = 1;
           any = true;
         }
@@ -271,8 +276,7 @@ class Search {
     }
   }
 
-  std::span<const Vec2> samples_;
-  std::span<const std::uint8_t> on_path_;
+  SearchedSamples samples_;
   std::span<const std::uint8_t> doubtful_;
   std::vector<std::uint8_t> jumps_;
   double threshold_;
@@ -287,10 +291,10 @@ class Search {
 
 }  // namespace
 
-SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          const BlockSurvey& survey, bool noise_is_known, double threshold,
-                          const CuspEnds& cusps, WorkBudget& work) {
-  Search search(samples, on_path, survey, threshold, cusps, work);
+SpikeSearch search_spikes(const SearchedSamples& samples, const BlockSurvey& survey,
+                          bool noise_is_known, double threshold, const CuspEnds& cusps,
+                          WorkBudget& work) {
+  Search search(samples, survey, threshold, cusps, work);
   if (!noise_is_known) {
     search.refine_noise();
   }

@@ -26,8 +26,8 @@ struct SpikeSearch {
 /// step. Each sample is judged by the block that removes fewest samples. If the noise is not known,
 /// it is estimated from the residuals of the samples that joined. Only blocks with a doubtful
 /// sample are fitted (BlockSurvey).
-SpikeSearch search_spikes(std::span<const Vec2> samples, std::span<const std::uint8_t> on_path,
-                          const BlockSurvey& survey, bool noise_is_known, double threshold,
-                          const CuspEnds& cusps, WorkBudget& work);
+SpikeSearch search_spikes(const SearchedSamples& samples, const BlockSurvey& survey,
+                          bool noise_is_known, double threshold, const CuspEnds& cusps,
+                          WorkBudget& work);
 
 }  // namespace palpate

@@ -1,6 +1,7 @@
 #include "core/local/spikes/spikes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -20,6 +21,7 @@ constexpr std::size_t kFewestSamples = 8;
 /// The samples that are not spikes so far, and their indices in the input.
 struct Kept {
   std::vector<Vec2> samples;
+  std::vector<RelativeNoise> noise;  ///< empty: 1
   std::vector<std::size_t> numbers;
 
   void drop(std::span<const std::uint8_t> is_spike, std::vector<std::size_t>* dropped) {
@@ -29,10 +31,14 @@ struct Kept {
         dropped->push_back(numbers[i]);
       } else {
         samples[kept] = samples[i];
+        if (!noise.empty()) {
+          noise[kept] = noise[i];
+        }
         numbers[kept++] = numbers[i];
       }
     }
     samples.resize(kept);
+    noise.resize(std::min(noise.size(), kept));
     numbers.resize(kept);
   }
 };
@@ -101,7 +107,8 @@ std::vector<std::uint8_t> on_path_of(std::span<const Vec2> samples) {
 }
 
 /// The samples that are finite; the others are dropped.
-Kept finite_of(std::span<const Vec2> samples, std::vector<std::size_t>* dropped) {
+Kept finite_of(std::span<const Vec2> samples, std::span<const RelativeNoise> noise,
+               std::vector<std::size_t>* dropped) {
   Kept kept;
   kept.samples.reserve(samples.size());
   kept.numbers.reserve(samples.size());
@@ -109,6 +116,9 @@ Kept finite_of(std::span<const Vec2> samples, std::vector<std::size_t>* dropped)
     if (samples[i].allFinite()) {
       kept.samples.push_back(samples[i]);
       kept.numbers.push_back(i);
+      if (!noise.empty()) {
+        kept.noise.push_back(noise[i]);
+      }
     } else {
       dropped->push_back(i);
     }
@@ -149,7 +159,8 @@ class SpikePasses {
 
  private:
   BlockSurvey surveyed() const {
-    return survey_blocks(kept_.samples, on_path_, sigma_m_, result_->threshold, cusps_, work_);
+    return survey_blocks({kept_.samples, kept_.noise, on_path_}, sigma_m_, result_->threshold,
+                         cusps_, work_);
   }
 
   /// Where samples are off, and what the noise is. The first survey is that of all samples.
@@ -185,8 +196,8 @@ class SpikePasses {
       searched.sigma_m = last_sigma_m_;
     }
     SpikeSearch found =
-        search_spikes(kept_.samples, on_path_, searched, sigma_m_ > 0.0 || !everywhere,
-                      result_->threshold, cusps_, work_);
+        search_spikes({kept_.samples, kept_.noise, on_path_}, searched,
+                      sigma_m_ > 0.0 || !everywhere, result_->threshold, cusps_, work_);
     last_sigma_m_ = found.sigma_m;
     result_->sigma_m = found.sigma_m;
     if (doublings_ > 0) {
@@ -231,7 +242,8 @@ class SpikePasses {
 Spikes find_spikes(std::span<const Vec2> samples, const SpikeOptions& options) {
   Spikes result;
   result.sigma_m = options.sigma_m;
-  Kept kept = finite_of(samples, &result.indices);
+  assert(options.noise.empty() || options.noise.size() == samples.size());
+  Kept kept = finite_of(samples, options.noise, &result.indices);
   if (kept.samples.size() < kFewestSamples) {
     return result;
   }

@@ -13,6 +13,8 @@ namespace palpate {
 struct SpikeOptions {
   /// Noise of a coordinate, one standard deviation; 0 = estimate it from the patch. [m]
   double sigma_m = 0.0;
+  /// By sample, in units of sigma_m, given or estimated. Empty: 1.
+  std::span<const RelativeNoise> noise = {};
   /// Probability that a patch with white Gaussian noise loses any sample. A sample is a spike if
   /// |residual| > z * its standard deviation, where z is the two-sided normal quantile of this
   /// probability divided by the number of samples: 3.9 for 111 samples.

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <span>
 #include <vector>
 
 #include "core/local/noise.h"
@@ -146,6 +148,70 @@ TEST_P(SpikesOf, AreFoundAndTheirNeighboursSpared) {
   EXPECT_GT(found, kTrials - 10);
   // False alarms in 1 % of the patches, and where the spike is at the end of the next block.
   EXPECT_LT(others, 0.05 * kTrials);
+}
+
+/// Noise that is ten times lower on the second half of a stroke.
+std::vector<RelativeNoise> quiet_second_half(std::size_t count) {
+  std::vector<RelativeNoise> noise(count);
+  std::fill(noise.begin() + static_cast<std::ptrdiff_t>(count / 2), noise.end(),
+            RelativeNoise{0.1, 0.1});
+  return noise;
+}
+
+std::vector<Vec2> with_noise(std::span<const Vec2> exact, std::span<const RelativeNoise> noise,
+                             std::mt19937_64& rng) {
+  std::normal_distribution<double> normal(0.0, kSigma);
+  std::vector<Vec2> samples(exact.begin(), exact.end());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double x = noise[i].across * normal(rng);
+    samples[i] += Vec2(x, noise[i].across * normal(rng));
+  }
+  return samples;
+}
+
+// Counted as even, the noise of the loud half would be that of all, or its samples spikes.
+TEST_P(SpikesOf, OfUnevenNoiseFalseAlarmsComeAtTheStatedRate) {
+  const std::vector<Vec2> exact = test::samples_of(arc(), 111);
+  const std::vector<RelativeNoise> even(exact.size());
+  const std::vector<RelativeNoise> uneven = quiet_second_half(exact.size());
+  auto rng = test::test_rng();
+  const auto rate = [&](std::span<const RelativeNoise> noise, double sigma_m) {
+    int patches = 0;
+    for (int i = 0; i < kTrials; ++i) {
+      const Spikes spikes =
+          find_spikes(with_noise(exact, noise, rng),
+                      {.sigma_m = sigma_m, .noise = noise, .false_alarms_per_patch = 0.05});
+      EXPECT_EQ(spikes.status, LocalStatus::Ok);
+      patches += spikes.indices.empty() ? 0 : 1;
+    }
+    return static_cast<double>(patches) / kTrials;
+  };
+  const double given = rate(uneven, kSigma);
+  const double estimated = rate(uneven, 0.0);
+  const double of_even = rate(even, 0.0);
+  if (!test::counts_tell()) return;
+  EXPECT_NEAR(given, 0.05, 0.034);  // as above
+  // Noise that is estimated costs alarms of its own; as many of even noise.
+  EXPECT_NEAR(estimated, of_even, std::numbers::sqrt2 * 0.034);
+}
+
+TEST_P(SpikesOf, AreFoundAmongQuietSamples) {
+  const std::vector<Vec2> exact = test::samples_of(arc(), 111);
+  const std::vector<RelativeNoise> noise = quiet_second_half(exact.size());
+  auto rng = test::test_rng();
+  int found = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    std::vector<Vec2> samples = with_noise(exact, noise, rng);
+    const std::size_t k = samples.size() / 2 + 8 + rng() % (samples.size() / 2 - 16);
+    samples[k] += 1.2 * kSigma * left_of((exact[k + 1] - exact[k]).normalized());
+    for (const std::size_t index :
+         find_spikes(samples, {.sigma_m = kSigma, .noise = noise}).indices) {
+      found += index == k ? 1 : 0;
+    }
+  }
+  if (!test::counts_tell()) return;
+  // 12 deviations of its own noise, which are 1.2 of the loud half's: see above.
+  EXPECT_GT(found, kTrials - 10);
 }
 
 TEST_P(SpikesOf, NoneOnNoiselessCurves) {

@@ -169,7 +169,7 @@ TEST(RepeatedTouches, AreAllAccountedFor) {
   }
   touches = numbered(std::move(touches));
   CleanPatches clean;
-  clean.update(touches, 0.0, 0.01, test::unbounded_work());
+  clean.update(touches, {.false_alarm = 0.01}, test::unbounded_work());
   EXPECT_LT(clean.moved_count(), touches.size());
   EXPECT_EQ(clean.moved_count() + clean.dwelling_count(), touches.size());
 }
@@ -181,10 +181,10 @@ TEST(CleanPatches, KeepNothingOfATipThatIsAnother) {
   }
   stroke.newest_m = stroke.samples.back().position_m;
   CleanPatches clean;
-  clean.update({stroke}, 0.0, 0.01, test::unbounded_work());
+  clean.update({stroke}, {.false_alarm = 0.01}, test::unbounded_work());
   stroke.context.material_side = MaterialSide::Left;
   stroke.context.tip_radius_m = 1e-3;
-  clean.update({stroke}, 0.0, 0.01, test::unbounded_work());
+  clean.update({stroke}, {.false_alarm = 0.01}, test::unbounded_work());
   EXPECT_EQ(clean.moved().front().context, stroke.context);
   EXPECT_EQ(clean.clean().front().context, stroke.context);
 }

@@ -40,6 +40,50 @@ TEST(Spikes, CleanArcsLoseAlmostNothing) {
   EXPECT_LT(static_cast<double>(flagged), mean + 5.0 * std::sqrt(mean));
 }
 
+/// A patch that states noise of its samples, ten times lower on its second half.
+StoredPatch half_quiet(std::mt19937_64& rng) {
+  StoredPatch patch;
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < 120; ++i) {
+    const double angle = 2e-2 * static_cast<double>(i);
+    const double sigma_m = i < 60 ? kNoiseOfPatch : 0.1 * kNoiseOfPatch;
+    const Vec2 noise(normal(rng), normal(rng));
+    patch.samples.push_back(
+        {0.1 * Vec2(std::cos(angle), std::sin(angle)) + sigma_m * noise, sigma_m, 1.0});
+  }
+  return patch;
+}
+
+/// One that states covariances, ten times longer one way, the same for all samples.
+StoredPatch longer_one_way(std::mt19937_64& rng) {
+  StoredPatch patch;
+  std::normal_distribution<double> normal;
+  const Eigen::Vector3d covariance = kNoiseOfPatch * kNoiseOfPatch * Eigen::Vector3d(1, 0, 0.01);
+  for (std::size_t i = 0; i < 120; ++i) {
+    const double angle = 2e-2 * static_cast<double>(i);
+    const double x = normal(rng);
+    patch.samples.push_back(
+        {0.1 * Vec2(std::cos(angle), std::sin(angle)) + kNoiseOfPatch * Vec2(x, 0.1 * normal(rng)),
+         mean_sigma_m(covariance), 1.0});
+    patch.details.emplace_back().covariance_m2 = covariance;
+  }
+  return patch;
+}
+
+TEST(Spikes, PatchesThatStateUnevenNoiseLoseAlmostNothing) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const auto patch_of : {half_quiet, longer_one_way}) {
+    std::size_t flagged = 0;
+    constexpr int kTrials = 300;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      const auto spikes = spikes_of(patch_of(rng), 0.0, 0.01, test::unbounded_work());
+      flagged += static_cast<std::size_t>(std::count(spikes.begin(), spikes.end(), true));
+    }
+    const double mean = 0.01 * kTrials;  // as above
+    EXPECT_LT(static_cast<double>(flagged), mean + 5.0 * std::sqrt(mean));
+  }
+}
+
 TEST(Spikes, NineInTenAreFoundEvenWhereAThirdOfSamplesAreSpikes) {
   std::mt19937_64 rng = test::test_rng();
   std::uniform_real_distribution<double> uniform(0.0, 1.0);

@@ -6,6 +6,7 @@
 
 #include "core/recognition/samples/cleaned/even_noise.h"
 #include "core/recognition/samples/cleaned/passes.h"
+#include "core/recognition/samples/cleaned/relative_noise.h"
 #include "core/recognition/samples/cleaned/repeated_touches.h"
 #include "core/recognition/samples/cleaned/stored_spikes.h"
 #include "core/recognition/samples/dwell_means.h"
@@ -55,7 +56,8 @@ bool has_any(const std::vector<bool>& flags) {
 /// either arm and bends the polynomial of the other: it waits for a class to judge it. The parts
 /// share the probability of a false alarm by their samples.
 std::vector<bool> spikes_between(const Reversals& turns, std::span<const StoredSample> samples,
-                                 double false_alarm, WorkBudget& work) {
+                                 std::span<const RelativeNoise> noise, double false_alarm,
+                                 WorkBudget& work) {
   std::vector<PatchSpan> gaps;  // between parts: nothing, or the sample at a cusp
   for (const std::size_t turn : turns.returns) gaps.push_back({turn, turn});
   for (const std::size_t turn : turns.cusps) gaps.push_back({turn - 1, turn});
@@ -66,10 +68,13 @@ std::vector<bool> spikes_between(const Reversals& turns, std::span<const StoredS
   is_spike.reserve(samples.size());
   bool after_cusp = false;
   for (const PatchSpan& gap : gaps) {
-    const auto part = samples.subspan(is_spike.size(), gap.begin - is_spike.size());
+    const std::size_t begin = is_spike.size();
+    const auto part = samples.subspan(begin, gap.begin - begin);
     const double share = static_cast<double>(part.size()) / static_cast<double>(samples.size());
     const CuspEnds cusps{after_cusp, gap.size() > 0};
-    const std::vector<bool> of_part = spikes_of(part, false_alarm * share, work, cusps);
+    const std::vector<bool> of_part =
+        spikes_of(part, false_alarm * share, work, cusps,
+                  noise.empty() ? noise : noise.subspan(begin, part.size()));
     is_spike.insert(is_spike.end(), of_part.begin(), of_part.end());
     is_spike.resize(gap.end, false);
     after_cusp = cusps.last;
@@ -106,21 +111,27 @@ Reversals turns_without(std::vector<bool> is_spike, std::span<const std::size_t>
 /// runs that turn back: the parts between their turns are too short to show them, and no block
 /// judges the sample at a cusp. So where other turns are left without these and what is found, the
 /// patch is searched as a whole, to find those that made or hid a turn.
-void clean_passes(const StoredPatch& patch, double default_sigma_m, double false_alarm,
+void clean_passes(const StoredPatch& patch, const CleanOptions& options,
                   std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
                   WorkBudget& work) {
+  const double default_sigma_m = options.default_sigma_m;
+  const std::vector<RelativeNoise> noise =
+      relative_noise(patch, default_sigma_m, options.form_deviation_m);
+  const auto spikes = [&](const Reversals& turns) {
+    return spikes_between(turns, patch.samples, noise, options.false_alarm, work);
+  };
   const auto even = with_even_noise(patch);
   const std::span<const StoredSample> samples = even ? *even : patch.samples;
   Reversals turns = reversals_of(samples, default_sigma_m);
-  std::vector<bool> is_spike = spikes_between(turns, samples, false_alarm, work);
+  std::vector<bool> is_spike = spikes(turns);
   if ((has_any(is_spike) || !turns.cusps.empty()) &&
       turns_without(is_spike, turns.cusps, samples, default_sigma_m) != turns) {
     if (turns != Reversals{}) {
-      is_spike = spikes_between({}, samples, false_alarm, work);
+      is_spike = spikes({});
     }
     turns = turns_without(is_spike, {}, samples, default_sigma_m);
     if (turns != Reversals{}) {
-      is_spike = spikes_between(turns, samples, false_alarm, work);
+      is_spike = spikes(turns);
     }
   }
   *passes = passes_of(patch, turns.returns);
@@ -129,8 +140,9 @@ void clean_passes(const StoredPatch& patch, double default_sigma_m, double false
 
 }  // namespace
 
-void CleanPatches::update(const std::vector<StoredPatch>& patches, double default_sigma_m,
-                          double false_alarm, WorkBudget& work) {
+void CleanPatches::update(const std::vector<StoredPatch>& patches, const CleanOptions& options,
+                          WorkBudget& work) {
+  const double default_sigma_m = options.default_sigma_m;
   seen_.resize(patches.size());
   moved_.clear();
   clean_.clear();
@@ -147,8 +159,8 @@ void CleanPatches::update(const std::vector<StoredPatch>& patches, double defaul
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
-      clean_passes(moving(patch, now.is_one_place, default_sigma_m), default_sigma_m, false_alarm,
-                   &now.moved, &now.clean, work);
+      clean_passes(moving(patch, now.is_one_place, default_sigma_m), options, &now.moved,
+                   &now.clean, work);
       seen = std::move(now);
       if (work.was_cut()) {
         seen.version = PatchVersion{};  // none that has a sample

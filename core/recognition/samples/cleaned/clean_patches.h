@@ -25,11 +25,16 @@ inline PatchVersion version_of(const StoredPatch& patch) {
   return {patch.context, patch.samples.size(), patch.contacts_per_sample, patch.newest_m};
 }
 
+struct CleanOptions {
+  double default_sigma_m = 0.0;   ///< noise of samples that state none; 0 = not known [m]
+  double form_deviation_m = 0.0;  ///< as RecognizerOptions::form_deviation_m [m]
+  double false_alarm = 0.0;       ///< as in spikes_of()
+};
+
 class CleanPatches {
  public:
-  /// Processes the patches of a memory. `default_sigma_m`: noise of samples that state none; 0 =
-  /// not known [m]. `false_alarm`: as in spikes_of().
-  void update(const std::vector<StoredPatch>& patches, double default_sigma_m, double false_alarm,
+  /// Processes the patches of a memory.
+  void update(const std::vector<StoredPatch>& patches, const CleanOptions& options,
               WorkBudget& work);
 
   /// The patches with each dwell replaced by its mean (dwell_means.h), and so single touches of one

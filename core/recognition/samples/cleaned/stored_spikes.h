@@ -25,11 +25,17 @@ constexpr std::size_t most_set_aside(std::size_t count) {
   return kMost + count / kOneIn;
 }
 
-/// Runs find_spikes (core/local/spikes/spikes.h) on the positions of one patch; the noise comes
-/// from the patch itself. One flag per sample. `false_alarm`: probability that a patch without
+/// Runs find_spikes (core/local/spikes/spikes.h) on the positions of one patch; how large the noise
+/// is comes from the patch itself, and only what it is of one sample beside another from its
+/// `noise` (relative_noise.h). One flag per sample. `false_alarm`: probability that a patch without
 /// spikes loses any sample.
 std::vector<bool> spikes_of(std::span<const StoredSample> samples, double false_alarm,
-                            WorkBudget& work, const CuspEnds& cusps = {});
+                            WorkBudget& work, const CuspEnds& cusps = {},
+                            std::span<const RelativeNoise> noise = {});
+
+/// The same of a patch as its samples state their noise, or else the default (0: not known).
+std::vector<bool> spikes_of(const StoredPatch& patch, double default_sigma_m, double false_alarm,
+                            WorkBudget& work);
 
 /// The samples without a flag. One flag per sample.
 std::vector<StoredSample> without_spikes(std::span<const StoredSample> samples,
