@@ -30,6 +30,8 @@ double price_of(WorkKind kind) {
       return 6.0;
     case WorkKind::SpikeRow:
       return 0.6;
+    case WorkKind::SectionRow:
+      return 1.1;
     case WorkKind::Sample:
       return 1.1;
   }

@@ -22,9 +22,10 @@ enum class WorkKind {
   DriftRow,       ///< a point made white for one size of a drift
   OffsetCell,     ///< one size of an offset by direction
   SpikeRow,       ///< a sample in one fit of the spike search
-  Sample,         ///< a sample read, smoothed and told of once
+  SectionRow,     ///< a sample in one fit of a section's polynomials
+  Sample,         ///< a sample read and told of once
 };
-inline constexpr std::size_t kWorkKinds = 13;
+inline constexpr std::size_t kWorkKinds = 14;
 
 /// In units of one PolynomialRow.
 double price_of(WorkKind kind);

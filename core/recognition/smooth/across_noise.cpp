@@ -69,7 +69,7 @@ SmoothModel smooth_across(bool sigma_known, const SectionSource& source, FitData
   for (int round = 0; round < kMostRounds; ++round) {
     is_moved = moved_along(as_told, data);
     SmoothModel next = fit_smooth_model(data, sigma_known);
-    next.smoothings += smooth.smoothings;
+    next.fitted += smooth.fitted;
     const bool stays = std::abs(next.chi2 - smooth.chi2) <= kSame;
     smooth = std::move(next);
     if (stays || std::find(is_moved.begin(), is_moved.end(), true) == is_moved.end()) {

@@ -26,7 +26,9 @@ bool set_noise(FitData* data, SmoothModel* smooth) {
 /// Takes what rounding leaves for the noise.
 void take_rounding(FitData* data, Arcs* arcs) {
   scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);
+  const std::size_t before = arcs->smooth.fitted;
   arcs->smooth = fit_smooth_model(data, true);
+  arcs->smooth.fitted += before;
   arcs->sigma_known = true;
   arcs->may_not_follow = false;
 }

@@ -18,11 +18,13 @@ void fit_or_halve(const FitData& data, const PatchSpan& points, const SectionNoi
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
   if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestOfSection) {
     const std::size_t middle = points.begin + points.size() / 2;
+    const std::size_t first = sections->size();
     fit_or_halve(data, {points.begin, middle}, noise, sections, true);
     fit_or_halve(data, {middle, points.end}, noise, sections, true);
+    (*sections)[first].fitted += points.size();
     return;
   }
-  sections->push_back({points, std::move(whole), is_part});
+  sections->push_back({points, std::move(whole), is_part, points.size()});
 }
 
 bool is_same(const StoredSample& a, const StoredSample& b) {
@@ -83,6 +85,7 @@ std::optional<std::vector<Section>> KeptSections::of(std::size_t p, const Stored
   }
   auto sections = moved(kept.sections, static_cast<std::ptrdiff_t>(data.patches[p].begin));
   for (Section& section : sections) {
+    section.fitted = 0;
     if (section.fit) {
       section.fit->frame = chord_frame(data.points[section.points.begin].position,
                                        data.points[section.points.end - 1].position);

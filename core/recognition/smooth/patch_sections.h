@@ -15,7 +15,8 @@ namespace palpate {
 struct Section {
   PatchSpan points;
   std::optional<SectionFit> fit;
-  bool is_part = false;  ///< of a section that no polynomial follows
+  bool is_part = false;    ///< of a section that no polynomial follows
+  std::size_t fitted = 0;  ///< points in the fits that led to it, those that were halved too
 
   double chi2() const { return fit->polynomials.residual_sum(fit->reduced_degree()); }
   int dof() const { return fit ? static_cast<int>(points.size()) - fit->reduced_degree() - 1 : 0; }

@@ -199,14 +199,16 @@ void cut_until_followed(const FitData& data, Section section, const SectionNoise
     return;
   }
   if (points.size() < 2 * kFewestOfSection) {
-    sections->push_back({points, std::nullopt, true});
+    sections->push_back({points, std::nullopt, true, section.fitted});
     return;
   }
   const std::size_t middle = points.begin + points.size() / 2;
+  const std::size_t first = sections->size();
   for (const PatchSpan& half : {PatchSpan{points.begin, middle}, PatchSpan{middle, points.end}}) {
-    cut_until_followed(data, {half, fit_section(data, half, noise), true}, noise, yardstick,
-                       sections);
+    cut_until_followed(data, {half, fit_section(data, half, noise), true, half.size()}, noise,
+                       yardstick, sections);
   }
+  (*sections)[first].fitted += section.fitted;
 }
 
 /// Halves the sections that are not followed until all are followed or too short for a polynomial.
@@ -254,6 +256,14 @@ double noise_time_of(const FitData& data, const std::vector<Section>& sections, 
   return more > kNothing ? 1.0 + more : 1.0;
 }
 
+std::size_t fitted_points(const std::vector<Section>& sections) {
+  std::size_t count = 0;
+  for (const Section& section : sections) {
+    count += section.fitted;
+  }
+  return count;
+}
+
 /// The smooth model of noise of which so many neighbours err together.
 SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise stated,
                             const SectionSource& source) {
@@ -269,6 +279,7 @@ SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise state
   } else if (noise.known && is_no_noise(quiet.chi2, quiet.dof, {.time = noise.time})) {
     // The stated noise is too low everywhere: with it, the fits would follow the noise itself.
     noise.variance = quiet.chi2 / quiet.dof;
+    model.fitted = fitted_points(sections);
     sections = sections_of_patches(*data, noise);
     quiet = quiet_of(sections, noise.known);
   }
@@ -279,6 +290,7 @@ SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise state
   }
   const Yardstick yardstick{shown, noise.known || mostly_with_degrees(sections)};
   sections = followed(*data, std::move(sections), noise, yardstick);
+  model.fitted += fitted_points(sections);
 
   NeighbourSums neighbours;
   auto section = sections.begin();
@@ -338,13 +350,13 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
                              const SectionSource& source) {
   constexpr double kSame = 1.25;  // times that smooth alike: as noises do 12 % apart
   constexpr int kMostTimes = 3;   // a bound of time: the last one's sections are taken
-  int smoothings = 0;
+  std::size_t fitted = 0;
   // From the noise of that time to the one that its sections show.
   const auto settled = [&](double time, FitData* smoothed) {
     SmoothModel model;
     for (int i = 0; i < kMostTimes; ++i) {
       model = smooth_model_of(smoothed, {sigma_known, 1.0, time}, stated, source);
-      ++smoothings;
+      fitted += model.fitted;
       if (std::max(model.noise_time / time, time / model.noise_time) <= kSame) {
         break;
       }
@@ -363,7 +375,7 @@ SmoothModel fit_smooth_model(FitData* data, bool sigma_known, StatedNoise stated
       *data = std::move(again);
     }
   }
-  model.smoothings = smoothings;
+  model.fitted = fitted;
   return model;
 }
 

@@ -40,7 +40,7 @@ struct SmoothModel {
   double noise_time = 1.0;
   int coefficients = 0;    ///< of the polynomials alone
   bool is_halved = false;  ///< some sections are halves of one that no polynomial followed
-  int smoothings = 1;      ///< of all samples, until this
+  std::size_t fitted = 0;  ///< points in the fits of all sections, until this
 
   int dof() const { return points - parameters; }
   /// Degrees of freedom that are left to estimate the noise from: of noise that neighbours share, a

@@ -232,6 +232,7 @@ bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
 Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
                     const WeighOptions& options, std::span<const SidedStart> starts) {
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
+  work.spend(WorkKind::SectionRow, arcs.smooth.fitted);
   const unsigned sought = with_limits(options.classes);
   const auto paths_under = [&](const Likelihood& likelihood) {
     Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, work);
@@ -302,9 +303,7 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
 
 Weighing weigh(FitData data, std::span<const StoredPatch> patches, WorkBudget& work,
                const WeighOptions& options, std::span<const SidedStart> starts) {
-  const std::size_t samples = data.points.size();
   Arcs arcs = smooth_arcs(std::move(data), {patches, options.kept_sections});
-  work.spend(WorkKind::Sample, samples * static_cast<std::size_t>(arcs.smooth.smoothings));
   return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }
 

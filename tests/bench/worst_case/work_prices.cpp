@@ -12,7 +12,7 @@ constexpr auto kKinds = static_cast<Eigen::Index>(kWorkKinds);
 constexpr std::array kNames = {"polynomial row", "conic row", "sought foot", "fit step",
                                "axis row",       "seed row",  "placed row",  "path row",
                                "posterior row",  "drift row", "offset cell", "spike row",
-                               "sample"};
+                               "section row",    "sample"};
 static_assert(kNames.size() == kWorkKinds);
 
 /// What a unit takes at prices, over the inputs [ns].
