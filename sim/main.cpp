@@ -2,6 +2,7 @@
 // at run time (no recognizer listens, a file cannot be written), 2 usage or an invalid scene.
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <fstream>
@@ -190,11 +191,15 @@ struct Player {
     }
     client::ContactPublisher publisher(publisher_options);
     if (const int code = wait_for_recognizer(publisher); code != kPlayed) return code;
+    const auto pause = std::chrono::duration_cast<std::chrono::nanoseconds>(
+        std::chrono::duration<double>(options.pause_s));
     std::uint64_t refused = 0;
     for (std::uint64_t round = 0; options.repeat == 0 || round < options.repeat; ++round) {
       for (const sim::Scene& scene : scenes) {
         const bool is_first = round == 0 && &scene == &scenes.front();
-        if (!is_first && sim::wait_or_stop(options.pause_s, stop_fd)) return code_of(refused);
+        if (!is_first && stop_requested_before(now_steady() + pause, stop_fd)) {
+          return code_of(refused);
+        }
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
         if (!tell_truth(scene, probes, object))
@@ -226,7 +231,7 @@ struct Player {
       if (!publisher.refusal().empty()) {
         return failed("the recognizer at " + options.contacts + " " + publisher.refusal());
       }
-      if (sim::wait_or_stop(0.0, stop_fd)) return kPlayed;
+      if (stop_requested(stop_fd)) return kPlayed;
       if (waited_s >= options.wait_s) {
         return failed("no recognizer listens at " + options.contacts + " (start palpate-node)");
       }

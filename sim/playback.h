@@ -25,7 +25,4 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
                     double speed, double longest_wait_s, int stop_fd,
                     client::ContactPublisher& publisher);
 
-/// Waits for the given time. Returns true if `stop_fd` became readable.
-bool wait_or_stop(double seconds, int stop_fd);
-
 }  // namespace palpate::sim

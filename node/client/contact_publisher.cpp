@@ -63,11 +63,13 @@ bool ContactPublisher::wait_for_recognizer(std::chrono::milliseconds timeout) {
 }
 
 bool ContactPublisher::publish(std::string_view probe, v1::ContactBatch& batch) {
-  return publish_when_room(probe, batch, [] { return true; });
+  return publish_when_room(probe, batch, std::chrono::seconds(0), [] { return false; });
 }
 
 bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatch& batch,
-                                         const std::function<bool()>& give_up) {
+                                         std::chrono::duration<double> longest,
+                                         const std::function<bool()>& is_stopped) {
+  const SteadyTime start = now_steady();
   auto found = probes_.find(probe);
   if (found == probes_.end()) {
     if (!is_valid_name(probe)) return false;
@@ -84,7 +86,7 @@ bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatc
     header.set_stamp_ns(unix_time_ns());
     batch.SerializeToString(&buffer_);
     if (send_now(socket_, state.topic, buffer_)) return true;
-    if (give_up()) return false;
+    if (is_stopped() || now_steady() - start >= longest) return false;
     // An XPUB is always writable to a poll, so there is nothing to wait for but time.
     constexpr std::chrono::milliseconds kAgain{1};
     std::this_thread::sleep_for(kAgain);

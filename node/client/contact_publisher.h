@@ -53,10 +53,11 @@ class ContactPublisher {
   bool publish(std::string_view probe, v1::ContactBatch& batch);
 
   /// Like publish(), for samples that can wait, as those of a file: waits at the high-water mark
-  /// until there is room, or until give_up(), which it asks every millisecond, returns true. The
-  /// message is lost only then.
+  /// until there is room, for `longest` at most or until is_stopped(), which it asks every
+  /// millisecond, returns true. The message is lost only then.
   bool publish_when_room(std::string_view probe, v1::ContactBatch& batch,
-                         const std::function<bool()>& give_up);
+                         std::chrono::duration<double> longest,
+                         const std::function<bool()>& is_stopped);
 
   /// Longest time that the destructor waits for messages that are published but not sent; 0.1 s if
   /// never called. A slow recognizer then still gets them; a recognizer that has gone is not waited

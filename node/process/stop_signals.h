@@ -3,8 +3,12 @@
 
 #include <poll.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdint>
 
+#include "node/process/clock.h"
 #include "node/process/take_signals.h"
 
 namespace palpate {
@@ -18,6 +22,19 @@ inline int take_stop_signals() { return take_signals({SIGINT, SIGTERM}); }
 inline bool stop_requested(int stop_fd) {
   pollfd stop{stop_fd, POLLIN, 0};
   return ::poll(&stop, 1, 0) > 0;
+}
+
+/// Waits until then; true as soon as a stop has been requested.
+inline bool stop_requested_before(SteadyTime due, int stop_fd) {
+  using std::chrono::nanoseconds;
+  constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+  pollfd stop{stop_fd, POLLIN, 0};
+  for (;;) {
+    const std::int64_t left_ns = std::max(nanoseconds(due - now_steady()), nanoseconds(0)).count();
+    const timespec timeout{left_ns / kNanosecondsPerSecond, left_ns % kNanosecondsPerSecond};
+    if (::ppoll(&stop, 1, &timeout, nullptr) > 0) return true;
+    if (left_ns == 0) return false;
+  }
 }
 
 }  // namespace palpate

@@ -45,6 +45,7 @@ std::chrono::nanoseconds end_of_publisher(std::optional<milliseconds> finish_wit
 class FullQueue : public ::testing::Test {
  protected:
   static constexpr int kMost = 20000;  // messages; far more than the system's buffers hold
+  static constexpr std::chrono::hours kForEver{1};
 
   FullQueue() {
     recognizer_.set(zmq::sockopt::rcvhwm, 10);
@@ -86,7 +87,7 @@ TEST_F(FullQueue, RefusesWhatItHasNoRoomFor) {
 
 TEST_F(FullQueue, WaitsForRoomAndLosesNothing) {
   for (int i = 0; i < kMost; ++i) {
-    ASSERT_TRUE(publisher_->publish_when_room("finger", batch_, [&] {
+    ASSERT_TRUE(publisher_->publish_when_room("finger", batch_, kForEver, [&] {
       read();
       return false;
     }));
@@ -100,12 +101,25 @@ TEST_F(FullQueue, WaitsForRoomAndLosesNothing) {
   EXPECT_EQ(next_seq_, static_cast<std::uint64_t>(kMost));
 }
 
+TEST_F(FullQueue, GivesUpAfterTheLongestWait) {
+  constexpr milliseconds kLongest{3};
+  bool taken = true;
+  std::chrono::nanoseconds waited{0};
+  for (int i = 0; i < kMost && taken; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    taken = publisher_->publish_when_room("finger", batch_, kLongest, [] { return false; });
+    waited = std::chrono::steady_clock::now() - start;
+  }
+  EXPECT_FALSE(taken);
+  EXPECT_GE(waited, kLongest);
+}
+
 TEST_F(FullQueue, GivesUpWhenItIsTold) {
   bool given_up = false;
   for (int i = 0; i < kMost && !given_up; ++i) {
     int asked = 0;
     const bool taken =
-        publisher_->publish_when_room("finger", batch_, [&] { return ++asked == 3; });
+        publisher_->publish_when_room("finger", batch_, kForEver, [&] { return ++asked == 3; });
     given_up = asked == 3;
     ASSERT_NE(taken, given_up);
   }

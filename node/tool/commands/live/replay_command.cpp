@@ -1,6 +1,4 @@
 // palpate replay: the contacts of a recording or of a CSV file, published as by their probes.
-#include <poll.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -162,32 +160,13 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
                           : Batches::ok(std::move(messages));
 }
 
-using Clock = std::chrono::steady_clock;
-
-/// Sleeps until then; true where a stop is asked for.
-bool sleep_until(Clock::time_point due, int stop_fd) {
-  for (;;) {
-    constexpr std::chrono::nanoseconds kLongest = std::chrono::milliseconds(100);
-    const std::chrono::nanoseconds left = due - Clock::now();
-    const std::int64_t wait = std::clamp(left, std::chrono::nanoseconds(0), kLongest).count();
-    const timespec timeout{0, wait};
-    pollfd stop{stop_fd, POLLIN, 0};
-    if (::ppoll(&stop, 1, &timeout, nullptr) > 0) {
-      return true;
-    }
-    if (left.count() <= 0) {
-      return false;
-    }
-  }
-}
-
 /// When a recorded time comes again. Stamps are a stranger's: none overflows, and none makes us
 /// wait for ever.
 class Pace {
  public:
   Pace(std::int64_t first_ns, double scale) : first_ns_(first_ns), scale_(scale) {}
 
-  Clock::time_point due(std::int64_t recorded_ns) {
+  SteadyTime due(std::int64_t recorded_ns) {
     // A recorded clock that steps back, or ahead by more than a day, makes no pause.
     constexpr double kLongestPauseNs = 24.0 * 3600.0 * 1e9;
     const double step = static_cast<double>(recorded_ns) -
@@ -209,7 +188,7 @@ class Pace {
     return std::llround(std::clamp(value, -kMost, kMost));
   }
 
-  Clock::time_point start_ = Clock::now();
+  SteadyTime start_ = now_steady();
   std::int64_t unix_start_ns_ = unix_time_ns();
   std::int64_t first_ns_;
   std::int64_t last_ns_ = 0;
@@ -222,30 +201,18 @@ class Pace {
 std::optional<int> wait_for_recognizer(const ReplayCommand& command, int stop_fd,
                                        Progress& progress, client::ContactPublisher& publisher) {
   const std::string& endpoint = command.connection.endpoint;
-  const auto give_up = Clock::now() + std::chrono::duration<double>(command.wait_s);
+  const auto give_up = now_steady() + std::chrono::duration<double>(command.wait_s);
   while (!publisher.wait_for_recognizer(std::chrono::milliseconds(50))) {
     if (!publisher.refusal().empty()) {
       return complain("the recognizer at " + endpoint + " " + publisher.refusal(), kFailed);
     }
     progress.tell([&] { return "waiting for a recognizer at " + endpoint; });
     if (stop_requested(stop_fd)) return kDone;
-    if (Clock::now() >= give_up) {
+    if (now_steady() >= give_up) {
       return complain("no recognizer listens at " + endpoint, kFailed);
     }
   }
   return std::nullopt;
-}
-
-/// At its own pace a recording does as its probes did, which wait for nobody. As fast as possible
-/// it waits for room, but not for longer than for a recognizer to come.
-bool publish(const ReplayCommand& command, TimedMessage& message, int stop_fd,
-             client::ContactPublisher& publisher) {
-  if (!command.fast) return publisher.publish(message.probe, message.batch);
-  const Clock::time_point start = Clock::now();
-  const auto waited_s = [&] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-  return publisher.publish_when_room(message.probe, message.batch, [&] {
-    return stop_requested(stop_fd) || waited_s() > command.wait_s;
-  });
 }
 
 int run(const ReplayCommand& command) {
@@ -292,10 +259,8 @@ int run(const ReplayCommand& command) {
   bool is_stopped = false;
   for (TimedMessage message; next(message);) {
     if (!pace) pace.emplace(message.due_ns, command.fast ? 0.0 : 1.0 / command.speed);
-    is_stopped = sleep_until(pace->due(message.due_ns), stop_fd);
-    if (is_stopped) {
-      break;
-    }
+    is_stopped = stop_requested_before(pace->due(message.due_ns), stop_fd);
+    if (is_stopped) break;
     for (v1::ContactSample& sample : *message.batch.mutable_samples()) {
       if (sample.stamp_ns() == 0) continue;  // not known, and no replay makes it known
       sample.set_stamp_ns(command.fast ? unix_time_ns() : pace->stamp_ns(sample.stamp_ns()));
@@ -305,9 +270,14 @@ int run(const ReplayCommand& command) {
           objects.try_emplace(message.batch.object(), first_object + objects.size());
       message.batch.set_object(number.first->second);
     }
-    const bool is_taken = publish(command, message, stop_fd, publisher);
+    // At its own pace a recording does as its probes did, which wait for nobody. As fast as
+    // possible it waits for room, but not for longer than for a recognizer to come.
+    const bool is_taken = command.fast ? publisher.publish_when_room(
+                                             message.probe, message.batch,
+                                             std::chrono::duration<double>(command.wait_s),
+                                             [&] { return is_stopped = stop_requested(stop_fd); })
+                                       : publisher.publish(message.probe, message.batch);
     // What a stop keeps from waiting for room is like all that comes after it: not replayed.
-    is_stopped = !is_taken && command.fast && stop_requested(stop_fd);
     if (is_stopped) break;
     ++messages;
     samples += static_cast<std::uint64_t>(message.batch.samples_size());
