@@ -1,13 +1,14 @@
 // Decodes the messages that a recognizer publishes. Needs no network.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "node/intake/heard_topics.h"
 #include "node/intake/sequence_tracker.h"
 #include "node/process/clock.h"
 #include "palpate/v1/contact.pb.h"
@@ -44,7 +45,7 @@ struct SubscriberCounters {
 /// any bytes: they are decoded or counted as malformed.
 class ResultDecoder {
  public:
-  explicit ResultDecoder(std::size_t most_topics) : most_topics_(most_topics) {}
+  explicit ResultDecoder(std::size_t most_topics) : feeds_(most_topics, kIdle) {}
 
   /// Returns the message if it is new, else nothing.
   ReceivedResult take(std::string_view topic, std::string_view payload,
@@ -61,17 +62,16 @@ class ResultDecoder {
   // One topic. The last recognition is kept for latest().
   struct Feed {
     SequenceTracker sequence;
-    SteadyTime heard;
     v1::Recognition recognition;
   };
 
-  bool has_room_for(std::string_view topic);
-  template <typename Message>
-  bool is_fresh(const Message& message, std::string_view topic);
+  // A topic that is silent for longer makes room for another one.
+  static constexpr std::chrono::seconds kIdle{10};
 
-  std::size_t most_topics_;
-  SteadyTime now_;  // of the latest message
-  std::map<std::string, Feed, std::less<>> feeds_;
+  template <typename Message>
+  Feed* take_fresh(const Message& message, std::string_view topic, SteadyTime now);
+
+  HeardTopics<Feed> feeds_;
   v1::Recognition recognition_;
   v1::LocalEstimate estimate_;
   v1::NodeStatus status_;

@@ -1,6 +1,5 @@
 #include "node/gateway/upward.h"
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -13,10 +12,8 @@ constexpr milliseconds kDrainTime{2};
 // Maximum of topics per cell: as many probes and groups as the largest node accepts (kMostThings in
 // node/options.h).
 constexpr std::size_t kMostTopics = 200'000;
-// A topic that is silent for longer makes room for others. Nodes repeat the latest message of every
-// group each second, so that nobody sends it any more.
+// A topic that is silent for longer makes room for others: nobody sends it any more.
 constexpr std::chrono::seconds kTopicIdle{60};
-constexpr std::chrono::seconds kBetweenEvictions{1};
 // The node's queue for us holds some thousands more. Beyond both the oldest messages are lost, as
 // their sequence numbers show.
 constexpr int kHighWaterMark = 20'000;
@@ -38,14 +35,16 @@ Upward::Upward(zmq::context_t& context, Plant& plant, const UpwardOptions& optio
       socket_(make_socket(context, zmq::socket_type::sub, settings_of(options))),
       handshakes_(context, socket_),
       spool_(options.spool_folder, options.spool_bytes),
-      outbox_(plant, [this](const Outgoing& message, Outbox::End end) {
-        if (message.segment != 0) spool_.release(message.segment);
-        if (end == Outbox::End::Stored) counters_.set_stored(counters_.stored() + 1);
-        if (end == Outbox::End::StoredBefore) {
-          counters_.set_stored_before(counters_.stored_before() + 1);
-        }
-        if (end == Outbox::End::Refused) counters_.set_refused(counters_.refused() + 1);
-      }) {
+      outbox_(plant,
+              [this](const Outgoing& message, Outbox::End end) {
+                if (message.segment != 0) spool_.release(message.segment);
+                if (end == Outbox::End::Stored) counters_.set_stored(counters_.stored() + 1);
+                if (end == Outbox::End::StoredBefore) {
+                  counters_.set_stored_before(counters_.stored_before() + 1);
+                }
+                if (end == Outbox::End::Refused) counters_.set_refused(counters_.refused() + 1);
+              }),
+      topics_(kMostTopics, kTopicIdle) {
   outbox_.hold_until(now_steady() + kHold);
   // Three prefixes, however many topics: libzmq loses subscriptions beyond a thousand when it
   // reconnects.
@@ -81,11 +80,15 @@ void Upward::take(const TwoFrames& message, SteadyTime now) {
   const std::string_view payload = view_of(message.payload);
   std::optional<Addressed> to;
   if (message.frame_count == 2) to = address(options_.cell, topic, payload);
-  if (!to || !has_place(topic, now)) {
+  SequenceTracker* const sequence = to ? topics_.hear(topic, now) : nullptr;
+  if (sequence == nullptr) {
     counters_.set_malformed(counters_.malformed() + 1);
     return;
   }
-  if (!is_news(topic, *to, now)) return;
+  const std::uint64_t missing = sequence->missing();
+  const SequenceEvent event = sequence->take(to->epoch, to->seq);
+  counters_.set_missing(counters_.missing() + sequence->missing() - missing);
+  if (!is_news(event)) return;
   counters_.set_received(counters_.received() + 1);
   // What waits on disk goes first.
   if (spool_.empty() && outbox_.has_room(now)) {
@@ -108,26 +111,6 @@ void Upward::keep_unsent() {
       spool_.add_before(message.before_segment, message.topic, message.payload);
     }
   }
-}
-
-/// False for repeats: a node sends the latest message of each group again once a second.
-bool Upward::is_news(std::string_view topic, const Addressed& to, SteadyTime now) {
-  auto found = topics_.find(topic);
-  if (found == topics_.end()) found = topics_.emplace(std::string(topic), Topic()).first;
-  found->second.heard = now;
-  SequenceTracker& sequence = found->second.sequence;
-  const std::uint64_t missing = sequence.missing();
-  const SequenceEvent event = sequence.take(to.epoch, to.seq);
-  counters_.set_missing(counters_.missing() + sequence.missing() - missing);
-  return palpate::is_news(event);
-}
-
-bool Upward::has_place(std::string_view topic, SteadyTime now) {
-  if (topics_.size() >= kMostTopics && !topics_.contains(topic) && now >= next_eviction_) {
-    next_eviction_ = now + kBetweenEvictions;
-    std::erase_if(topics_, [&](const auto& each) { return now - each.second.heard > kTopicIdle; });
-  }
-  return topics_.size() < kMostTopics || topics_.contains(topic);
 }
 
 void Upward::fill(v1::GatewayUpStatus& status) const {

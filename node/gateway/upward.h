@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <string>
 #include <vector>
 #include <zmq.hpp>
 
 #include "node/gateway/outbox.h"
 #include "node/gateway/spool.h"
+#include "node/intake/heard_topics.h"
 #include "node/intake/sequence_tracker.h"
 #include "node/wire/endpoint.h"
 #include "node/wire/handshake_watch.h"
@@ -55,21 +55,13 @@ class Upward {
 
  private:
   void take(const TwoFrames& message, SteadyTime now);
-  bool is_news(std::string_view topic, const Addressed& to, SteadyTime now);
-  bool has_place(std::string_view topic, SteadyTime now);
-
-  struct Topic {
-    SequenceTracker sequence;
-    SteadyTime heard;
-  };
 
   UpwardOptions options_;
   zmq::socket_t socket_;
   HandshakeWatch handshakes_;
   Spool spool_;
   Outbox outbox_;
-  std::map<std::string, Topic, std::less<>> topics_;
-  SteadyTime next_eviction_;
+  HeardTopics<SequenceTracker> topics_;
   v1::GatewayUpStatus counters_;
 };
 
