@@ -3,39 +3,28 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <exception>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "node/files/printable.h"
 #include "node/gateway/delivered_contact.h"
 #include "node/gateway/streams.h"
 #include "node/gateway/subjects.h"
-#include "palpate/v1/contact.pb.h"
-#include "palpate/v1/node_status.pb.h"
 
 namespace palpate::gateway {
 namespace {
 
 using std::chrono::milliseconds;
 
-// Maximum of contacts sent to the node and unanswered. The node would reject only beyond 16 MiB
-// (one group may use half of max_waiting_bytes).
-constexpr std::size_t kMostInFlight = 512;
-constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
 // With more groups than this, and nothing to do, a place begins anew, with none: where each part
 // has a group of its own, all but a few are over.
 constexpr std::size_t kManyGroups = 1024;
 // But not more often than this: where so many groups are in use, each is replayed after it.
 constexpr std::chrono::seconds kBetweenClearings{60};
-// Refused contacts that are remembered. They may be delivered again until all contacts before them
-// are done, and the plant delivers 8,192 contacts ahead (contact_consumer.cpp).
-constexpr std::size_t kMostRefused = 16'384;
 constexpr milliseconds kTend{50};
 constexpr milliseconds kRetry{300};
-// A node publishes its status every second.
-constexpr milliseconds kNodeSilence{5000};
 // Attempts of a replay that stops before its last contact: a replica of the stream that is behind
 // will have it soon.
 constexpr int kReplayTries = 20;
@@ -44,23 +33,25 @@ constexpr const char* kFrom = "Palpate-From";
 constexpr const char* kThrough = "Palpate-Through";
 constexpr const char* kBegin = "Palpate-Begin";
 
-template <typename Message>
-bool parse(Message& message, std::string_view payload) {
-  return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
-}
-
 }  // namespace
 
-Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
+Place::Place(zmq::context_t& context, Plant& plant, PlaceName name, const FedNodeOptions& node,
              SteadyTime begin_at)
-    : context_(context),
-      plant_(plant),
+    : plant_(plant),
       name_(std::move(name)),
-      node_options_(std::move(node)),
+      max_message_bytes_(node.max_message_bytes),
+      most_groups_(node.most_groups),
       consumer_(
           plant, name_,
           {[this](const PlantMessage& message, std::uint64_t seq) { take_contact(message, seq); },
-           [this] { forget_contacts(); }, [this](const std::string& why) { fail(why); }}),
+           [this] { ledger_.forget(); }, [this](const std::string& why) { fail(why); }}),
+      feed_(context, node,
+            {[this](const std::string& group, const FedContact& contact) {
+               node_rejected(group, contact);
+             },
+             [this](const v1::Recognition& recognition, const AnsweredSpan& span,
+                    std::string_view payload) { node_answered(recognition, span, payload); },
+             [this](const std::string& why) { fail(why); }}),
       begin_at_(begin_at) {
   status_.set_cell(name_.cell);
   status_.set_partition(name_.partition);
@@ -77,25 +68,19 @@ void Place::begin(SteadyTime now) {
   has_begun_ = true;
   begun_ = now;
   try {
-    node_ = std::make_unique<FedNode>(
-        context_, node_options_,
-        name_.partition.empty() ? name_.cell : name_.cell + "-" + name_.partition);
+    feed_.begin(name_.partition.empty() ? name_.cell : name_.cell + "-" + name_.partition, now);
   } catch (const std::exception& error) {
     fail(error.what());
     return;
   }
-  node_heard_ = now;
   consumer_.begin();
 }
 
 void Place::forget_all() {
   plant_.forget(this);
   consumer_.forget();
-  node_.reset();
-  node_has_spoken_ = has_contact_ = false;
-  ready_.clear();
-  given_.clear();
-  given_count_ = in_flight_count_ = in_flight_bytes_ = 0;
+  feed_.forget();
+  has_contact_ = false;
   groups_.clear();
 }
 
@@ -114,11 +99,11 @@ void Place::begin_anew() {
 void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) {
   // Of the contacts before the first one none comes again: they are done, or the stream has lost
   // them at its limit.
-  if (!has_contact_) counted_.erase(counted_.begin(), counted_.lower_bound(stream_seq));
+  if (!has_contact_) ledger_.begin_at(stream_seq);
   has_contact_ = true;
-  if (refused_.contains(stream_seq)) return consumer_.done(stream_seq);
+  if (ledger_.is_refused(stream_seq)) return consumer_.done(stream_seq);
   std::optional<GroupContact> read;
-  if (message.payload().size() <= node_options_.max_message_bytes) {
+  if (message.payload().size() <= max_message_bytes_) {
     read = read_contact(message.subject(), message.payload(), stream_seq);
   }
   if (!read) {
@@ -126,12 +111,14 @@ void Place::take_contact(const PlantMessage& message, std::uint64_t stream_seq) 
     return refuse(stream_seq);
   }
   // (More groups than the plant delivers contacts ahead: so some were done since the last time.)
-  if (groups_.size() >= node_options_.most_groups && !groups_.contains(read->group)) {
+  if (groups_.size() >= most_groups_ && !groups_.contains(read->group)) {
     return fail("it has " + std::to_string(groups_.size()) + " groups");
   }
   const auto found = groups_.try_emplace(std::move(read->group)).first;
   Group& group = found->second;
-  if (group.state == Group::State::Live) return add_new(group, std::move(read->contact));
+  if (group.state == Group::State::Live) {
+    return add_new(found->first, group, std::move(read->contact));
+  }
   group.arrived.push_back(std::move(read->contact));
   if (group.state == Group::State::Unknown) ask(found->first, group);
 }
@@ -145,18 +132,19 @@ void Place::ask(const std::string& name, Group& group) {
     asked.replayed.clear();
     asked.last_answer_seq = message == nullptr ? 0 : message->number("Nats-Sequence");
     if (asked.last_answer_seq == 0) {
-      if (message != nullptr && message->status() == "404") return end_replay(asked);
+      if (message != nullptr && message->status() == "404") return end_replay(name, asked);
       asked.state = Group::State::Unknown;  // tend() asks again
       return;
     }
     asked.through = message->number(kThrough);
     const std::uint64_t begin = message->number(kBegin);
     v1::Recognition last;
-    if (asked.through == 0 || begin == 0 || !parse(last, message->payload())) {
+    if (asked.through == 0 || begin == 0 ||
+        !last.ParseFromString(std::string(message->payload()))) {
       asked.through = 0;
       spdlog::warn("{}: the last answer of group {} is none of a recogniser of the plant",
                    printable(name_.text()), printable(name));
-      return end_replay(asked);
+      return end_replay(name, asked);
     }
     // Nothing new has arrived, so there is nothing to continue.
     const bool is_new =
@@ -181,19 +169,19 @@ void Place::replay(const std::string& name, std::uint64_t object, std::uint64_t 
           return;
         }
         const std::uint64_t seq = message->number("Nats-Sequence");
-        if (!message->status().empty() || seq > group.through) return end_replay(group);
+        if (!message->status().empty() || seq > group.through) return end_replay(name, group);
         auto read = read_contact(message->header("Nats-Subject"), message->payload(), seq);
         // A contact that the node did not accept then is not replayed.
         if (read && read->contact.object == object && read->group == name) {
           read->contact.is_new = false;
           group.replayed.push_back(std::move(read->contact));
         }
-        if (seq == group.through) return end_replay(group);
+        if (seq == group.through) return end_replay(name, group);
         replay(name, object, seq + 1);
       });
 }
 
-void Place::end_replay(Group& group) {
+void Place::end_replay(const std::string& name, Group& group) {
   const std::uint64_t last = group.replayed.empty() ? 0 : group.replayed.back().stream_seq;
   if (last != group.through && group.through != 0) {
     if (++group.tries < kReplayTries) {
@@ -204,148 +192,57 @@ void Place::end_replay(Group& group) {
   }
   group.state = Group::State::Live;
   status_.set_replayed(status_.replayed() + group.replayed.size());
-  for (FedContact& contact : group.replayed) group.feed.add(std::move(contact));
+  for (FedContact& contact : group.replayed) feed_.add(name, std::move(contact));
   group.replayed.clear();
-  for (FedContact& contact : group.arrived) add_new(group, std::move(contact));
+  for (FedContact& contact : group.arrived) add_new(name, group, std::move(contact));
   group.arrived.clear();
 }
 
-void Place::add_new(Group& group, FedContact contact) {
+void Place::add_new(const std::string& name, Group& group, FedContact contact) {
   if (contact.stream_seq <= group.through) return answered_before(contact.stream_seq);
-  if (counted_.insert(contact.stream_seq).second) status_.set_contacts(status_.contacts() + 1);
+  if (ledger_.take(contact.stream_seq)) status_.set_contacts(status_.contacts() + 1);
   group.unanswered.push_back(contact.stream_seq);
-  group.feed.add(std::move(contact));
-  make_ready(group);
-}
-
-/// A stream that was made again counts from 1: a contact of it may have the number of one that was
-/// refused.
-void Place::forget_contacts() {
-  counted_.clear();
-  refused_.clear();
+  feed_.add(name, std::move(contact));
 }
 
 void Place::refuse(std::uint64_t stream_seq) {
-  counted_.erase(stream_seq);
-  refused_.insert(stream_seq);
-  if (refused_.size() > kMostRefused) refused_.erase(refused_.begin());
+  ledger_.refuse(stream_seq);
   consumer_.done(stream_seq);
 }
 
 /// The answer was stored before this place began anew, and nobody told.
 void Place::answered_before(std::uint64_t stream_seq) {
-  if (counted_.erase(stream_seq) > 0) status_.set_answered(status_.answered() + 1);
+  if (ledger_.answered(stream_seq)) status_.set_answered(status_.answered() + 1);
   consumer_.done(stream_seq);
 }
 
 // --- Between the node and the plant
 
-void Place::make_ready(Group& group) {
-  if (group.is_ready) return;
-  group.is_ready = true;
-  ready_.push_back(&group);
+void Place::node_rejected(const std::string& name, const FedContact& contact) {
+  if (!contact.is_new) return;
+  status_.set_rejected(status_.rejected() + 1);
+  std::erase(groups_[name].unanswered, contact.stream_seq);
+  refuse(contact.stream_seq);
 }
 
-void Place::give() {
-  while (!ready_.empty()) {
-    Group& group = *ready_.front();
-    while (const FedContact* contact = group.feed.next()) {
-      if (in_flight_count_ >= kMostInFlight || in_flight_bytes_ >= kMostBytesInFlight) return;
-      node_->send(make_topic(TopicKind::Contact, contact->probe), contact->payload);
-      given_.push_back({&group, *contact});
-      given_.back().contact.payload = std::string();
-      ++given_count_;
-      ++in_flight_count_;
-      in_flight_bytes_ += contact->bytes;
-      group.feed.given();
-    }
-    ready_.pop_front();
-    group.is_ready = false;
-  }
-}
-
-void Place::hear(const TwoFrames& message) {
-  const std::optional<Topic> topic = parse_topic(view_of(message.topic));
-  if (!topic || message.frame_count != 2) return;
-  const std::string_view payload = view_of(message.payload);
-  if (topic->kind == TopicKind::Contact) {
-    v1::ContactBatch batch;
-    if (parse(batch, payload)) node_took(batch.header(), topic->name);
-  } else if (topic->kind == TopicKind::Recognition) {
-    v1::Recognition recognition;
-    if (parse(recognition, payload)) node_answered(recognition, payload);
-  } else if (topic->kind == TopicKind::Status) {
-    v1::NodeStatus node;
-    if (!parse(node, payload)) return;
-    node_has_spoken_ = true;
-    node_heard_ = now_steady();
-    // The node has judged this many contacts, and has already shown those that it accepted; the
-    // rest are rejected.
-    while (!given_.empty() && given_count_ - given_.size() < node.messages_received()) {
-      node_rejected();
-    }
-  }
-}
-
-/// The node shows the contacts that it accepts in the order in which they were sent. Those that it
-/// skips it has rejected.
-void Place::node_took(const v1::Header& header, std::string_view probe) {
-  while (!given_.empty()) {
-    const FedContact& first = given_.front().contact;
-    if (first.seq == header.seq() && first.epoch == header.epoch() && first.probe == probe) {
-      given_.front().group->feed.accepted(first.stream_seq);
-      given_.pop_front();
-      return;
-    }
-    node_rejected();
-  }
-}
-
-void Place::node_rejected() {
-  const Given given = std::move(given_.front());
-  given_.pop_front();
-  Group& group = *given.group;
-  const std::optional<FedContact> out = group.feed.rejected(given.contact.stream_seq);
-  if (out) {
-    --in_flight_count_;
-    in_flight_bytes_ -= out->bytes;
-    if (out->is_new) {
-      status_.set_rejected(status_.rejected() + 1);
-      std::erase(group.unanswered, out->stream_seq);
-      refuse(out->stream_seq);
-    }
-  }
-  make_ready(group);
-}
-
-void Place::node_answered(const v1::Recognition& recognition, std::string_view payload) {
-  const auto found = groups_.find(recognition.group());
-  if (found == groups_.end()) return;
-  Group& group = found->second;
-  const std::size_t count = group.feed.in_flight_count();
-  const std::size_t bytes = group.feed.in_flight_bytes();
-  const std::optional<AnsweredSpan> span =
-      group.feed.answered(recognition.newest_batch_source(), recognition.newest_batch_epoch(),
-                          recognition.newest_batch_seq());
-  in_flight_count_ -= count - group.feed.in_flight_count();
-  in_flight_bytes_ -= bytes - group.feed.in_flight_bytes();
-  make_ready(group);
-  if (!span) return;
+void Place::node_answered(const v1::Recognition& recognition, const AnsweredSpan& span,
+                          std::string_view payload) {
+  const std::string& name = recognition.group();
+  Group& group = groups_[name];
   const v1::Header& header = recognition.header();
-  Answer answer{*span, {}, std::string(payload)};
-  answer.id =
-      found->first + "/" + std::to_string(header.epoch()) + "/" + std::to_string(header.seq());
+  Answer answer{span, {}, std::string(payload)};
+  answer.id = name + "/" + std::to_string(header.epoch()) + "/" + std::to_string(header.seq());
   // While the plant stores one answer, the later ones of the same object are merged: fewer answers,
   // but none is delayed.
   const bool may_replace = group.answers.size() > (group.is_first_sent ? 1U : 0U);
-  if (may_replace && group.answers.back().span.object == span->object) {
+  if (may_replace && group.answers.back().span.object == span.object) {
     answer.span.from = group.answers.back().span.from;
     answer.span.contacts += group.answers.back().span.contacts;
     group.answers.back() = std::move(answer);
   } else {
     group.answers.push_back(std::move(answer));
   }
-  store_next(found->first, group);
+  store_next(name, group);
 }
 
 void Place::store_next(const std::string& name, Group& group) {
@@ -392,7 +289,7 @@ void Place::stored(const std::string& name, const Stored& stored) {
       refuse(seq);
       continue;
     }
-    counted_.erase(seq);
+    ledger_.answered(seq);
     consumer_.done(seq);
   }
   group.answers.pop_front();
@@ -418,11 +315,12 @@ void Place::is_it_ours(const std::string& name) {
 }
 
 bool Place::is_waiting() const {
-  return std::any_of(groups_.begin(), groups_.end(), [](const auto& entry) {
-    const Group& group = entry.second;
-    return group.state == Group::State::Asking || !group.arrived.empty() ||
-           !group.unanswered.empty() || group.feed.in_flight_count() > 0 || !group.answers.empty();
-  });
+  return feed_.in_flight_count() > 0 ||
+         std::any_of(groups_.begin(), groups_.end(), [](const auto& entry) {
+           const Group& group = entry.second;
+           return group.state == Group::State::Asking || !group.arrived.empty() ||
+                  !group.unanswered.empty() || !group.answers.empty();
+         });
 }
 
 void Place::tend(SteadyTime now) {
@@ -445,14 +343,8 @@ void Place::serve(SteadyTime now) {
     if (now >= begin_at_ && plant_.is_connected()) begin(now);
     return;
   }
-  TwoFrames message;
-  // (Handling a message may begin everything anew.)
-  while (node_ && node_->receive(message)) hear(message);
-  if (!node_) return;
-  if (node_->has_ended()) return fail("its node has ended");
-  if (now - node_heard_ > kNodeSilence) return fail("its node says nothing");
-  if (node_->is_ready(node_has_spoken_)) give();
-  if (now >= next_tend_) tend(now);
+  feed_.serve(now);
+  if (has_begun_ && now >= next_tend_) tend(now);
 }
 
 }  // namespace palpate::gateway

@@ -13,19 +13,18 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <map>
-#include <memory>
-#include <set>
 #include <string>
 #include <string_view>
 #include <zmq.hpp>
 
 #include "node/gateway/contact_consumer.h"
-#include "node/gateway/fed_node.h"
+#include "node/gateway/contact_ledger.h"
 #include "node/gateway/group_feed.h"
+#include "node/gateway/node_feed.h"
 #include "node/gateway/plant.h"
 #include "palpate/v1/gateway_status.pb.h"
-#include "palpate/v1/header.pb.h"
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate::gateway {
@@ -33,7 +32,7 @@ namespace palpate::gateway {
 class Place {
  public:
   /// Does nothing on the plant before `begin_at`.
-  Place(zmq::context_t& context, Plant& plant, PlaceName name, FedNodeOptions node,
+  Place(zmq::context_t& context, Plant& plant, PlaceName name, const FedNodeOptions& node,
         SteadyTime begin_at);
   ~Place();
   Place(const Place&) = delete;
@@ -44,7 +43,7 @@ class Place {
   void serve(SteadyTime now);
 
   /// The socket of the node's results, to be polled; nullptr if there is no node at present.
-  zmq::socket_t* socket() { return node_ ? &node_->results() : nullptr; }
+  zmq::socket_t* socket() { return feed_.socket(); }
 
   const PlaceName& name() const { return name_; }
   const v1::GatewayPlaceStatus& status() const { return status_; }
@@ -60,10 +59,9 @@ class Place {
   struct Group {
     enum class State { Unknown, Asking, Live };
     State state = State::Unknown;
-    std::deque<FedContact> arrived;   // received before we know which of them are answered
-    std::deque<FedContact> replayed;  // answered contacts of the present object
-    int tries = 0;                    // attempts to read them all
-    GroupFeed feed;
+    std::deque<FedContact> arrived;        // received before we know which of them are answered
+    std::deque<FedContact> replayed;       // answered contacts of the present object
+    int tries = 0;                         // attempts to read them all
     std::deque<std::uint64_t> unanswered;  // stream_seq of the new contacts
     std::uint64_t through = 0;             // last contact covered by a stored answer
     std::uint64_t last_answer_seq = 0;     // in the stream of recognitions; 0 = none
@@ -71,12 +69,6 @@ class Place {
     bool is_storing = false;
     // The first of `answers` may be stored already, so it must not change.
     bool is_first_sent = false;
-    bool is_ready = false;  // it is in ready_
-  };
-
-  struct Given {
-    Group* group = nullptr;
-    FedContact contact;  // without its payload
   };
 
   void begin(SteadyTime now);
@@ -89,47 +81,32 @@ class Place {
   // Finds out which contacts of a group are answered, and replays its present object.
   void ask(const std::string& name, Group& group);
   void replay(const std::string& name, std::uint64_t object, std::uint64_t next_seq);
-  void end_replay(Group& group);
-  void add_new(Group& group, FedContact contact);
-
-  // Each contact is counted once, however often it is delivered.
-  void forget_contacts();
+  void end_replay(const std::string& name, Group& group);
+  void add_new(const std::string& name, Group& group, FedContact contact);
   void refuse(std::uint64_t stream_seq);
   void answered_before(std::uint64_t stream_seq);
 
   // Between the node and the plant.
-  void make_ready(Group& group);
-  void give();
-  void hear(const TwoFrames& message);
-  void node_took(const v1::Header& header, std::string_view probe);
-  void node_rejected();
-  void node_answered(const v1::Recognition& recognition, std::string_view payload);
+  void node_rejected(const std::string& name, const FedContact& contact);
+  void node_answered(const v1::Recognition& recognition, const AnsweredSpan& span,
+                     std::string_view payload);
   void store_next(const std::string& name, Group& group);
   void stored(const std::string& name, const Stored& stored);
   void is_it_ours(const std::string& name);
   void tend(SteadyTime now);
 
-  zmq::context_t& context_;
   Plant& plant_;
   PlaceName name_;
-  FedNodeOptions node_options_;
+  std::size_t max_message_bytes_;
+  std::size_t most_groups_;
   ContactConsumer consumer_;
+  NodeFeed feed_;
   v1::GatewayPlaceStatus status_;
-  // By their numbers in the stream, as long as it is known to be the same one.
-  std::set<std::uint64_t> counted_;  // contacts that have neither an answer nor a refusal yet
-  std::set<std::uint64_t> refused_;  // the latest ones: rejected by the node, or hostile
+  ContactLedger ledger_;
 
   // State that is discarded when the place begins anew.
-  std::unique_ptr<FedNode> node_;
-  bool node_has_spoken_ = false;
   bool has_contact_ = false;
-  SteadyTime node_heard_;
   std::map<std::string, Group, std::less<>> groups_;
-  std::deque<Group*> ready_;
-  std::deque<Given> given_;  // sent to the node, which has not shown yet whether it accepts them
-  std::uint64_t given_count_ = 0;
-  std::size_t in_flight_count_ = 0;
-  std::size_t in_flight_bytes_ = 0;
 
   SteadyTime begin_at_;
   bool has_begun_ = false;
