@@ -130,6 +130,77 @@ double half_extent_m(std::span<const GivenPoint> points) {
   return 0.5 * (high - low).maxCoeff();
 }
 
+/// Whether another shape of the class is nearly as probable.
+bool has_rival(const GivenFit& fit, double recognized_probability) {
+  return fit.rival && !(fit.rival->log_odds > log_odds(recognized_probability));
+}
+
+void write_verdict(const PointsFitted& fitted, const RecognizerOptions& options,
+                   v1::Recognition& answer) {
+  const GivenFit& fit = fitted.fit;
+  // Deviations are those of the noise and of the probes: of residuals that these cannot have left
+  // they say nothing.
+  const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || fit.chi2 <= fitted.most_chi2;
+  const bool determined = fit.status == GivenStatus::Fitted && fit.bounded &&
+                          is_determined(fit.shape, fit.covariance, half_extent_m(fitted.points),
+                                        options.determined_fraction);
+  answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
+  if (!by_noise) {
+    answer.set_doubt(v1::RECOGNITION_DOUBT_MISFIT);
+  } else if (has_rival(fit, options.recognized_probability)) {
+    answer.set_doubt(v1::RECOGNITION_DOUBT_TWO_SHAPES);
+  } else if (!determined) {
+    answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
+  } else {
+    answer.set_status(v1::RECOGNITION_STATUS_RECOGNIZED);
+  }
+}
+
+void write_curve(CurveClass curve_class, const GivenFit& fit, v1::Recognition& answer) {
+  palpate::to_wire(fit.shape, *answer.mutable_parameters());
+  palpate::to_wire(fit.world_T_curve, *answer.mutable_pose());
+  answer.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
+  for (Eigen::Index row = 0; row < fit.covariance.rows(); ++row) {
+    for (Eigen::Index column = 0; column < fit.covariance.cols(); ++column) {
+      answer.add_covariance(fit.covariance(row, column));
+    }
+  }
+  answer.set_sigma_m(fit.sigma_m);
+  v1::Hypothesis& hypothesis = *answer.mutable_hypotheses(0);
+  *hypothesis.mutable_parameters() = answer.parameters();
+  *hypothesis.mutable_pose() = answer.pose();
+  hypothesis.set_chi2(fit.chi2);
+  hypothesis.set_dof(static_cast<std::uint32_t>(std::max(fit.dof, 0)));
+}
+
+void write_rival(const GivenFit& fit, v1::Recognition& answer) {
+  v1::Hypothesis& rival = *answer.add_hypotheses();
+  v1::Hypothesis& first = *answer.mutable_hypotheses(0);
+  first.set_probability(1.0 / (1.0 + std::exp(-fit.rival->log_odds)));
+  rival.set_curve_class(answer.curve_class());
+  rival.set_probability(1.0 - first.probability());
+  palpate::to_wire(fit.rival->shape, *rival.mutable_parameters());
+  palpate::to_wire(fit.rival->world_T_curve, *rival.mutable_pose());
+  rival.set_chi2(fit.rival->chi2);
+  rival.set_dof(first.dof());
+}
+
+/// `place_of`: of each sample in the file's order, its place among the points.
+void write_form(const PointsFitted& fitted, std::span<const std::size_t> place_of,
+                v1::GivenClassAnswer& given) {
+  const GivenFit& fit = fitted.fit;
+  given.set_rms_m(fit.rms_m);
+  given.set_peak_to_valley_m(fit.peak_to_valley_m);
+  const bool has_normals =
+      std::any_of(fitted.points.begin(), fitted.points.end(),
+                  [](const GivenPoint& point) { return point.normal_sigma_rad > 0.0; });
+  for (const std::size_t place : place_of) {
+    given.add_residual_m(fit.residuals[place].distance_m);
+    if (has_normals) given.add_residual_normal_rad(fit.residuals[place].normal_rad);
+  }
+  given.set_normal_count(fit.normals);
+}
+
 }  // namespace
 
 v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const ContactRun> runs,
@@ -139,9 +210,9 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
   const JoinedRuns joined = joined_runs(runs);
   std::vector<std::size_t> set_aside;
   for (const std::size_t number : left_out) set_aside.push_back(joined.place_of.at(number - 1));
-  auto [points, fit, most_chi2] = fit_runs(curve_class, joined.runs, probes, set_aside,
-                                           {options.sigma_m, options.touched_from});
-  const bool fitted = fit.status == GivenStatus::Fitted;
+  PointsFitted fitted = fit_runs(curve_class, joined.runs, probes, set_aside,
+                                 {options.sigma_m, options.touched_from});
+  GivenFit& fit = fitted.fit;
   v1::GivenClassAnswer given;
   v1::Recognition& answer = *given.mutable_recognition();
   given.set_status(to_wire(fit.status));
@@ -150,73 +221,23 @@ v1::GivenClassAnswer given_class_answer(CurveClass curve_class, std::span<const 
     given.add_left_out(static_cast<std::uint32_t>(number));
   }
   answer.set_curve_class(to_wire(curve_class));
-  answer.set_sample_count(points.size() - left_out.size());
+  answer.set_sample_count(fitted.points.size() - left_out.size());
   v1::Hypothesis& hypothesis = *answer.add_hypotheses();
   hypothesis.set_curve_class(answer.curve_class());
   hypothesis.set_probability(1.0);
-  if (fit.status == GivenStatus::AtLimit) {
-    hypothesis.set_at_limit(true);
+  const bool at_limit = fit.status == GivenStatus::AtLimit;
+  if (at_limit || !has_curve(fit)) {
+    hypothesis.set_at_limit(at_limit);
     answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
-    answer.set_doubt(v1::RECOGNITION_DOUBT_AT_LIMIT);
+    answer.set_doubt(at_limit ? v1::RECOGNITION_DOUBT_AT_LIMIT
+                              : v1::RECOGNITION_DOUBT_UNDETERMINED);
     return given;
   }
-  if (!has_curve(fit)) {
-    answer.set_status(v1::RECOGNITION_STATUS_AMBIGUOUS);
-    answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
-    return given;
-  }
-  answer.set_noise_correlation_m(count_correlation(points, &fit).length);
-  // Deviations are those of the noise and of the probes: of residuals that these cannot have left
-  // they say nothing.
-  const bool by_noise = !fit.sigma_stated || fit.dof <= 0 || fit.chi2 <= most_chi2;
-  const bool determined =
-      fitted && fit.bounded &&
-      is_determined(fit.shape, fit.covariance, half_extent_m(points), options.determined_fraction);
-  const bool one_shape =
-      !fit.rival || fit.rival->log_odds > log_odds(options.recognized_probability);
-  answer.set_status(determined && by_noise && one_shape ? v1::RECOGNITION_STATUS_RECOGNIZED
-                                                        : v1::RECOGNITION_STATUS_AMBIGUOUS);
-  if (!by_noise) {
-    answer.set_doubt(v1::RECOGNITION_DOUBT_MISFIT);
-  } else if (!one_shape) {
-    answer.set_doubt(v1::RECOGNITION_DOUBT_TWO_SHAPES);
-  } else if (!determined) {
-    answer.set_doubt(v1::RECOGNITION_DOUBT_UNDETERMINED);
-  }
-  palpate::to_wire(fit.shape, *answer.mutable_parameters());
-  palpate::to_wire(fit.world_T_curve, *answer.mutable_pose());
-  answer.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
-  for (Eigen::Index row = 0; row < fit.covariance.rows(); ++row) {
-    for (Eigen::Index column = 0; column < fit.covariance.cols(); ++column) {
-      answer.add_covariance(fit.covariance(row, column));
-    }
-  }
-  *hypothesis.mutable_parameters() = answer.parameters();
-  *hypothesis.mutable_pose() = answer.pose();
-  hypothesis.set_chi2(fit.chi2);
-  hypothesis.set_dof(static_cast<std::uint32_t>(std::max(fit.dof, 0)));
-  if (!one_shape) {
-    v1::Hypothesis& first = *answer.mutable_hypotheses(0);
-    first.set_probability(1.0 / (1.0 + std::exp(-fit.rival->log_odds)));
-    v1::Hypothesis& rival = *answer.add_hypotheses();
-    rival.set_curve_class(answer.curve_class());
-    rival.set_probability(1.0 - first.probability());
-    palpate::to_wire(fit.rival->shape, *rival.mutable_parameters());
-    palpate::to_wire(fit.rival->world_T_curve, *rival.mutable_pose());
-    rival.set_chi2(fit.rival->chi2);
-    rival.set_dof(first.dof());
-  }
-  answer.set_sigma_m(fit.sigma_m);
-  given.set_rms_m(fit.rms_m);
-  given.set_peak_to_valley_m(fit.peak_to_valley_m);
-  const bool has_normals = std::any_of(points.begin(), points.end(), [](const GivenPoint& point) {
-    return point.normal_sigma_rad > 0.0;
-  });
-  for (const std::size_t place : joined.place_of) {
-    given.add_residual_m(fit.residuals[place].distance_m);
-    if (has_normals) given.add_residual_normal_rad(fit.residuals[place].normal_rad);
-  }
-  given.set_normal_count(fit.normals);
+  answer.set_noise_correlation_m(count_correlation(fitted.points, &fit).length);
+  write_verdict(fitted, options, answer);
+  write_curve(curve_class, fit, answer);
+  if (has_rival(fit, options.recognized_probability)) write_rival(fit, answer);
+  write_form(fitted, joined.place_of, given);
   return given;
 }
 

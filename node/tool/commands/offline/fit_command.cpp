@@ -175,6 +175,86 @@ int run(FitRequest& fit) {
   return std::cout ? code : complain("standard output: cannot be written", kFailed);
 }
 
+void add_output_flags(CLI::App& command, FitRequest& fit) {
+  command
+      .add_option(
+          "--format", fit.format,
+          "text (default on a terminal) or json (default elsewhere): one Recognition of the "
+          "wire contract a line, with \"notes\" about the file where there are any")
+      ->check(CLI::IsMember({"text", "json"}))
+      ->type_name("FORMAT");
+  command
+      .add_option("--export", fit.curve_file,
+                  "Write the recognised curve, by the name's ending: .csv (points along it), .json "
+                  "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
+                  "groups go to FILE-2.csv, ...")
+      ->check([](const std::string& path) {
+        return export_kind(path) ? std::string()
+                                 : "\"" + path + "\" ends in none of .csv, .json, .dxf";
+      })
+      ->type_name("FILE");
+  command
+      .add_option("--plot", fit.plot,
+                  "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
+                  "further groups go to FILE-2.svg, ...")
+      ->check(svg_file())
+      ->type_name("FILE");
+  command
+      .add_option("--plot-invariants", fit.invariants_plot,
+                  "Draw the recognition tree's invariants as SVG, for every class that it "
+                  "asked about: what each contact says, and the value of all with its band; "
+                  "conics as the line Ip = Ic2 - Ic1 |kappa|^(-2/3); further groups go to "
+                  "FILE-2.svg, ...")
+      ->check(svg_file())
+      ->type_name("FILE");
+}
+
+/// What is known of the part and its probes, and what is asked of them.
+void add_task_flags(CLI::App& command, FitRequest& fit) {
+  command
+      .add_option(
+          "--class", fit.given_class,
+          "Fit this class to all samples, whatever they look like and in whatever order: the "
+          "least squares of the orthogonal distances, with form (rms, peak to valley) and "
+          "residuals. Of the options under Recognition it takes --sigma, --touched-from, "
+          "--determined-fraction and --recognized-probability; json is one GivenClassAnswer "
+          "(palpate/v1/given_class.proto) a line")
+      ->excludes("--plot-invariants")
+      ->check(curve_class_name())
+      ->type_name("CLASS");
+  command
+      .add_option("--leave-out", fit.left_out,
+                  "Samples that are not to count, numbered from 1 in the file's order; 1-5 "
+                  "are five of them")
+      ->delimiter(',')
+      ->transform(without_blanks_around)
+      ->type_name("NUMBER,...");
+  command
+      .add_option(
+          "--part", fit.part,
+          "Place the closed spline of this scene file (*.textproto) instead of recognising a "
+          "curve: its pose, the segment of every patch, the samples beyond a joint. Single touches "
+          "may be in any order, if their noise is stated. Of the options under Recognition it "
+          "takes --sigma, --recognized-probability and --false-outlier-probability; json is one "
+          "PartMatch (palpate/v1/part_match.proto) a line")
+      ->excludes("--export")
+      ->excludes("--plot")
+      ->excludes("--plot-invariants")
+      ->excludes("--class")
+      ->excludes("--leave-out")
+      ->type_name("FILE");
+  command
+      .add_option(
+          "--probe", fit.probe_files,
+          "Probe file of palpate calibrate: its offsets are taken off by the normals "
+          "found, its noise, drift and tip radius count, and the answer names it. May be "
+          "repeated: of several files each is for the probe that it names, and one without a name "
+          "for all others. Not with --part")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("FILE");
+}
+
 }  // namespace
 
 void add_fit_command(CLI::App& app, int& exit_code) {
@@ -189,87 +269,8 @@ void add_fit_command(CLI::App& app, int& exit_code) {
   command->add_option("FILE", fit->files, "Files of points; - is standard input")
       ->required()
       ->type_name("");
-  command
-      ->add_option(
-          "--format", fit->format,
-          "text (default on a terminal) or json (default elsewhere): one Recognition of the "
-          "wire contract a line, with \"notes\" about the file where there are any")
-      ->check(CLI::IsMember({"text", "json"}))
-      ->type_name("FORMAT");
-  CLI::Option* curve_file =
-      command
-          ->add_option(
-              "--export", fit->curve_file,
-              "Write the recognised curve, by the name's ending: .csv (points along it), .json "
-              "(class, parameters, pose and points) or .dxf (for CAD, in millimetres); further "
-              "groups go to FILE-2.csv, ...")
-          ->check([](const std::string& path) {
-            return export_kind(path) ? std::string()
-                                     : "\"" + path + "\" ends in none of .csv, .json, .dxf";
-          })
-          ->type_name("FILE");
-  CLI::Option* plot =
-      command
-          ->add_option(
-              "--plot", fit->plot,
-              "Draw samples, curve, 95 % band, rivals, enlarged residuals and frame as SVG; "
-              "further groups go to FILE-2.svg, ...")
-          ->check(svg_file())
-          ->type_name("FILE");
-  CLI::Option* invariants_plot =
-      command
-          ->add_option("--plot-invariants", fit->invariants_plot,
-                       "Draw the recognition tree's invariants as SVG, for every class that it "
-                       "asked about: what each contact says, and the value of all with its band; "
-                       "conics as the line Ip = Ic2 - Ic1 |kappa|^(-2/3); further groups go to "
-                       "FILE-2.svg, ...")
-          ->check(svg_file())
-          ->type_name("FILE");
-  CLI::Option* given =
-      command
-          ->add_option(
-              "--class", fit->given_class,
-              "Fit this class to all samples, whatever they look like and in whatever order: the "
-              "least squares of the orthogonal distances, with form (rms, peak to valley) and "
-              "residuals. Of the options under Recognition it takes --sigma, --touched-from, "
-              "--determined-fraction and --recognized-probability; json is one GivenClassAnswer "
-              "(palpate/v1/given_class.proto) a line")
-          ->excludes(invariants_plot)
-          ->check(curve_class_name())
-          ->type_name("CLASS");
-  CLI::Option* leave_out =
-      command
-          ->add_option("--leave-out", fit->left_out,
-                       "Samples that are not to count, numbered from 1 in the file's order; 1-5 "
-                       "are five of them")
-          ->delimiter(',')
-          ->transform(without_blanks_around)
-          ->type_name("NUMBER,...");
-  command
-      ->add_option(
-          "--part", fit->part,
-          "Place the closed spline of this scene file (*.textproto) instead of recognising a "
-          "curve: its pose, the segment of every patch, the samples beyond a joint. Single touches "
-          "may be in any order, if their noise is stated. Of the options under Recognition it "
-          "takes "
-          "--sigma, --recognized-probability and --false-outlier-probability; json is one "
-          "PartMatch (palpate/v1/part_match.proto) a line")
-      ->excludes(curve_file)
-      ->excludes(plot)
-      ->excludes(invariants_plot)
-      ->excludes(given)
-      ->excludes(leave_out)
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--probe", fit->probe_files,
-          "Probe file of palpate calibrate: its offsets are taken off by the normals "
-          "found, its noise, drift and tip radius count, and the answer names it. May be "
-          "repeated: of several files each is for the probe that it names, and one without a name "
-          "for all others. Not with --part")
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-      ->type_name("FILE");
+  add_output_flags(*command, *fit);
+  add_task_flags(*command, *fit);
   add_file_flags(*command, fit->file);
   add_recognizer_flags(*command, *fit);
   command->callback([fit, command, &exit_code] {
