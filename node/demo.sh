@@ -17,26 +17,11 @@ for argument in "$@"; do
   esac
 done
 
-step() { printf '\n== %s\n' "$*"; }
-
-packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev protobuf-compiler libprotobuf-dev
-          libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev
-          python3)
-missing=()
-for package in "${packages[@]}"; do
-  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
-    missing+=("$package")
-done
-if [ ${#missing[@]} -gt 0 ]; then
-  step "installing: ${missing[*]}"
-  as_root=()
-  [ "$(id -u)" = 0 ] || as_root=(sudo)
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-    "${missing[@]}" >/dev/null
-fi
-
+source tests/support/install.sh
 source tests/support/how_long.sh
+
+install g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev protobuf-compiler libprotobuf-dev \
+  libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev libboost-dev nlohmann-json3-dev zlib1g-dev libdxflib-dev python3
 calibrate
 step "building (release): about $(how_long $demo_build_cost) on this machine, $(nproc) cores$(
   command -v ccache >/dev/null && echo '; less where ccache has the objects')"

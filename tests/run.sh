@@ -22,7 +22,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-step() { printf '\n== %s\n' "$*"; }
+source tests/support/install.sh
 
 # Parts of the run, each with the seconds it may take on the machine of tests/README.md: 40 minutes in all.
 budgets=()
@@ -49,19 +49,7 @@ packages=(g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-d
           python3-distributed python3-pip python3-setuptools python3-wheel strace systemd zsh)
 if [ "$sanitize" = yes ] || [ "$fuzz" != 0 ]; then packages+=(clang); fi
 if [ "$tidy" = yes ]; then packages+=(clang clang-tidy); fi
-missing=()
-for package in "${packages[@]}"; do
-  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' ||
-    missing+=("$package")
-done
-if [ ${#missing[@]} -gt 0 ]; then
-  step "installing: ${missing[*]}"
-  as_root=()
-  [ "$(id -u)" = 0 ] || as_root=(sudo)
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-    "${missing[@]}" >/dev/null
-fi
+install "${packages[@]}"
 
 jobs=$(nproc)
 build() {  # preset, targets...

@@ -23,20 +23,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-step() { printf '\n== %s\n' "$*"; }
-as_root=()
-[ "$(id -u)" = 0 ] || as_root=(sudo)
-install() {  # packages that are missing
-  local missing=()
-  for package in "$@"; do
-    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
-  done
-  [ ${#missing[@]} -gt 0 ] || return 0
-  step "installing: ${missing[*]}"
-  "${as_root[@]}" apt-get update -qq
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
-    "${missing[@]}" >/dev/null
-}
+source tests/support/install.sh
 install g++ cmake ninja-build pkg-config libeigen3-dev libceres-dev libgtest-dev libgmock-dev libbenchmark-dev \
   protobuf-compiler libprotobuf-dev libzmq3-dev cppzmq-dev libspdlog-dev libcli11-dev zlib1g-dev python3 python3-protobuf \
   python3-zmq python3-matplotlib python3-numpy
