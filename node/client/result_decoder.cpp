@@ -2,18 +2,10 @@
 
 #include <optional>
 
+#include "node/wire/parse.h"
 #include "node/wire/topics.h"
 
 namespace palpate::client {
-namespace {
-
-template <typename Message>
-bool parse(Message& message, std::string_view payload) {
-  return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
-}
-
-}  // namespace
-
 /// The message's topic; nullptr if the message is not to be used.
 template <typename Message>
 ResultDecoder::Feed* ResultDecoder::take_fresh(const Message& message, std::string_view topic,

@@ -4,6 +4,7 @@
 
 #include "node/gateway/plant_message.h"
 #include "node/gateway/subjects.h"
+#include "node/wire/parse.h"
 #include "palpate/v1/contact.pb.h"
 
 namespace palpate::gateway {
@@ -12,9 +13,7 @@ std::optional<GroupContact> read_contact(std::string_view subject, std::string_v
                                          std::uint64_t stream_seq) {
   const std::optional<ContactSubject> names = parse_contact_subject(subject);
   v1::ContactBatch batch;
-  if (!names || !batch.ParseFromArray(payload.data(), static_cast<int>(payload.size())) ||
-      !batch.has_header())
-    return std::nullopt;
+  if (!names || !parse(batch, payload) || !batch.has_header()) return std::nullopt;
   const v1::Header& header = batch.header();
   if (!header.source().empty() && header.source() != names->probe) return std::nullopt;
   if ((batch.group().empty() ? names->probe : batch.group()) != names->group) return std::nullopt;

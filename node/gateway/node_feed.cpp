@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "node/wire/parse.h"
 #include "node/wire/topics.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/node_status.pb.h"
@@ -17,11 +18,6 @@ constexpr std::size_t kMostInFlight = 512;
 constexpr std::size_t kMostBytesInFlight = std::size_t{4} << 20;
 // A node publishes its status every second.
 constexpr std::chrono::milliseconds kNodeSilence{5000};
-
-template <typename Message>
-bool parse(Message& message, std::string_view payload) {
-  return message.ParseFromArray(payload.data(), static_cast<int>(payload.size()));
-}
 
 }  // namespace
 

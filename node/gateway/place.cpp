@@ -12,6 +12,7 @@
 #include "node/gateway/delivered_contact.h"
 #include "node/gateway/streams.h"
 #include "node/gateway/subjects.h"
+#include "node/wire/parse.h"
 
 namespace palpate::gateway {
 namespace {
@@ -139,8 +140,7 @@ void Place::ask(const std::string& name, Group& group) {
     asked.through = message->number(kThrough);
     const std::uint64_t begin = message->number(kBegin);
     v1::Recognition last;
-    if (asked.through == 0 || begin == 0 ||
-        !last.ParseFromString(std::string(message->payload()))) {
+    if (asked.through == 0 || begin == 0 || !parse(last, message->payload())) {
       asked.through = 0;
       spdlog::warn("{}: the last answer of group {} is none of a recogniser of the plant",
                    printable(name_.text()), printable(name));

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <vector>
 
+#include "node/wire/parse.h"
 #include "palpate/v1/contact.pb.h"
 #include "palpate/v1/node_status.pb.h"
 #include "palpate/v1/recognition.pb.h"
@@ -44,8 +45,7 @@ std::uint64_t hash_of(std::string_view bytes) {
 
 template <typename Message>
 bool parse_with_header(Message& message, std::string_view payload) {
-  return message.ParseFromArray(payload.data(), static_cast<int>(payload.size())) &&
-         message.has_header();
+  return parse(message, payload) && message.has_header();
 }
 
 }  // namespace

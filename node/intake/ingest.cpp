@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "node/wire/convert.h"
+#include "node/wire/parse.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -75,9 +76,7 @@ RejectReason ContactDecoder::decode(std::size_t frame_count, std::string_view to
   if (!parsed || parsed->kind != TopicKind::Contact) return v1::REJECT_REASON_TOPIC;
   probe_ = parsed->name;
   if (payload.size() > limits_.max_message_bytes) return v1::REJECT_REASON_TOO_LARGE;
-  if (!batch_.ParseFromArray(payload.data(), static_cast<int>(payload.size()))) {
-    return v1::REJECT_REASON_PARSE;
-  }
+  if (!parse(batch_, payload)) return v1::REJECT_REASON_PARSE;
   RejectReason reason = check_header();
   if (reason == kPassed) reason = check_context();
   if (reason == kPassed) reason = take_samples();

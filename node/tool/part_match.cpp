@@ -65,11 +65,7 @@ void to_wire(const PartPlacement& placement, std::span<const StoredPatch> patche
              const ContactGroup& group, v1::PartPlacement& message) {
   message.set_probability(placement.probability);
   to_wire(placement.world_T_part, *message.mutable_pose());
-  for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index column = 0; column < 3; ++column) {
-      message.add_covariance(placement.covariance(row, column));
-    }
-  }
+  palpate::to_wire(placement.covariance, *message.mutable_covariance());
   message.set_chi2(placement.chi2);
   message.set_dof(placement.dof);
   message.set_misfit_chi2(placement.misfit_chi2);

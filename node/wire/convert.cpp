@@ -35,15 +35,6 @@ void fill_hypothesis(const Hypothesis& hypothesis, v1::Hypothesis& out) {
   to_wire(hypothesis.world_T_curve, *out.mutable_pose());
 }
 
-void add_row_major(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
-                   google::protobuf::RepeatedField<double>* out) {
-  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
-    for (Eigen::Index column = 0; column < matrix.cols(); ++column) {
-      out->Add(matrix(row, column));
-    }
-  }
-}
-
 }  // namespace
 
 v1::CurveClass to_wire(CurveClass curve_class) {
@@ -140,6 +131,13 @@ v1::RecognitionDoubt to_wire(Doubt doubt) {
   return v1::RECOGNITION_DOUBT_UNSPECIFIED;
 }
 
+void to_wire(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+             google::protobuf::RepeatedField<double>& out) {
+  for (Eigen::Index row = 0; row < matrix.rows(); ++row) {
+    for (Eigen::Index column = 0; column < matrix.cols(); ++column) out.Add(matrix(row, column));
+  }
+}
+
 void to_wire(const ShapeParameters& shape, v1::Parameters& out) {
   Eigen::Index index = 0;
   for (const char letter : parameter_letters(shape.curve_class)) {
@@ -171,9 +169,9 @@ void to_wire(const Recognition& recognition, const ContactSourceOf& source_of,
     to_wire(recognition.shape, *out.mutable_parameters());
     to_wire(recognition.world_T_curve, *out.mutable_pose());
     out.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
-    add_row_major(recognition.covariance, out.mutable_covariance());
+    to_wire(recognition.covariance, *out.mutable_covariance());
     if (recognition.unqualified_probe) {
-      add_row_major(noise_covariance(recognition), out.mutable_noise_covariance());
+      to_wire(noise_covariance(recognition), *out.mutable_noise_covariance());
     }
   }
   for (const Hypothesis& hypothesis : recognition.hypotheses) {

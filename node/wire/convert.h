@@ -27,6 +27,9 @@ std::optional<MaterialSide> from_wire(v1::MaterialSide side);
 v1::RecognitionStatus to_wire(RecognitionStatus status);
 v1::RecognitionDoubt to_wire(Doubt doubt);
 
+/// Adds the entries row by row.
+void to_wire(const Eigen::Ref<const Eigen::MatrixXd>& matrix,
+             google::protobuf::RepeatedField<double>& out);
 void to_wire(const ShapeParameters& shape, v1::Parameters& out);
 void to_wire(const Pose2& pose, v1::Pose2& out);
 

@@ -160,11 +160,7 @@ void write_curve(CurveClass curve_class, const GivenFit& fit, v1::Recognition& a
   palpate::to_wire(fit.shape, *answer.mutable_parameters());
   palpate::to_wire(fit.world_T_curve, *answer.mutable_pose());
   answer.set_pose_symmetry(static_cast<std::uint32_t>(pose_symmetry(curve_class)));
-  for (Eigen::Index row = 0; row < fit.covariance.rows(); ++row) {
-    for (Eigen::Index column = 0; column < fit.covariance.cols(); ++column) {
-      answer.add_covariance(fit.covariance(row, column));
-    }
-  }
+  palpate::to_wire(fit.covariance, *answer.mutable_covariance());
   answer.set_sigma_m(fit.sigma_m);
   v1::Hypothesis& hypothesis = *answer.mutable_hypotheses(0);
   *hypothesis.mutable_parameters() = answer.parameters();
