@@ -3,11 +3,10 @@ import math
 import random
 import statistics
 import struct
-import time
 import unittest
 
 import zmq
-from bus import Bus, Probe, memory_kb, wait_for
+from bus import Bus, Probe, latency_s, memory_kb, wait_for
 from palpate.v1 import contact_pb2
 
 MESSAGES = 1_000_000
@@ -81,10 +80,7 @@ class Hostile(unittest.TestCase):
             good = Probe(bus.publisher(), "good")
 
             def latency(object_number):
-                start = time.monotonic()
-                good.send(good.batch(0, 20, object_number=object_number))
-                wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, 10)
-                return time.monotonic() - start
+                return latency_s(good, planner, object_number)
 
             quiet = [latency(1 + n) for n in range(200)]
             before = memory_kb(node)

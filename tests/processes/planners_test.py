@@ -7,7 +7,7 @@ import time
 import unittest
 
 import zmq
-from bus import Bus, Probe, memory_kb, peak_memory_kb, wait_for
+from bus import Bus, Probe, latency_s, memory_kb, peak_memory_kb, wait_for
 
 
 def cpu_s(process):
@@ -16,12 +16,6 @@ def cpu_s(process):
 
 
 class Planners(unittest.TestCase):
-    def latency(self, probe, planner, object_number):
-        start = time.monotonic()
-        probe.send(probe.batch(0, 20, object_number=object_number))
-        wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, 30)
-        return time.monotonic() - start
-
     def memory_settled(self, node, enough_kb, timeout_s=10):
         """As soon as it is little enough, or what it is after the timeout."""
         deadline = time.monotonic() + timeout_s
@@ -34,7 +28,7 @@ class Planners(unittest.TestCase):
             node = bus.start_node()
             planner = bus.subscriber("recognition/finger/", "status/")
             probe = Probe(bus.publisher())
-            self.latency(probe, planner, 1)
+            latency_s(probe, planner, 1)
             before = memory_kb(node)
             flood = bus.context.socket(zmq.XSUB)
             flood.setsockopt(zmq.SNDHWM, 0)
@@ -42,10 +36,10 @@ class Planners(unittest.TestCase):
             flood.connect(bus.results)
             for number in range(20_000):
                 flood.send(b"\1" + f"{number:08d}".encode() + os.urandom(492).hex().encode())
-            slowest = max(self.latency(probe, planner, 2 + n) for n in range(100))
+            slowest = max(latency_s(probe, planner, 2 + n) for n in range(100))
             status = wait_for(planner, lambda m: hasattr(m, "connections_cut") and m.connections_cut > 0)
             flood.close()
-            slowest = max(slowest, *(self.latency(probe, planner, 1000 + n) for n in range(100)))
+            slowest = max(slowest, *(latency_s(probe, planner, 1000 + n) for n in range(100)))
             # While libzmq takes in what it has received nobody can cut it, so how far the memory rises, and how long
             # an answer waits beside other processes, is the scheduler's choice: every answer has come, the slowest is
             # printed. What stays is not: at most the 64 kB that are permitted, of 32 bytes of memory each, twice as

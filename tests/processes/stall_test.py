@@ -6,7 +6,7 @@ import statistics
 import time
 import unittest
 
-from bus import Bus, Probe, wait_for
+from bus import Bus, Probe, latency_s, wait_for
 from programs import SOURCE, TOOL, run
 
 SLOW = SOURCE / "tests/data/hostile/slow_34440_samples.csv.gz"
@@ -55,10 +55,7 @@ class Stall(unittest.TestCase):
             good = Probe(bus.publisher(), "good")
 
             def latency(object_number):
-                start = time.monotonic()
-                good.send(good.batch(0, 20, object_number=object_number))
-                wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, 60)
-                return time.monotonic() - start
+                return latency_s(good, planner, object_number)
 
             def play_all_slow():
                 """When it returns, the last slow group's whole input is still to be recognised."""

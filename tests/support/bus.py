@@ -161,6 +161,14 @@ class Probe:
             self.send(self.batch(10 * number, **options))
 
 
+def latency_s(probe, planner, object_number, timeout_s=60):
+    """Seconds until a planner has the answer to a new object's first batch."""
+    start = time.monotonic()
+    probe.send(probe.batch(0, 20, object_number=object_number))
+    wait_for(planner, lambda m: hasattr(m, "curve_class") and m.object == object_number, timeout_s)
+    return time.monotonic() - start
+
+
 def errors_in_sigmas(answer, truth):
     """Errors of parameters and pose, in published standard deviations. `truth`: a SceneTruth in JSON."""
     names = [name for name in "abc" if name in truth.get("parameters", {})]
