@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "node/gateway/plant.h"
+#include "node/gateway/plant/plant.h"
 
 namespace palpate::gateway {
 

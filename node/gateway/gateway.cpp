@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "node/files/printable.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/subjects.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 

@@ -10,9 +10,9 @@
 #include <zmq.hpp>
 
 #include "node/gateway/claims.h"
-#include "node/gateway/place.h"
-#include "node/gateway/plant.h"
-#include "node/gateway/streams.h"
+#include "node/gateway/place/place.h"
+#include "node/gateway/plant/plant.h"
+#include "node/gateway/plant/streams.h"
 #include "node/gateway/upward.h"
 #include "node/process/service_manager.h"
 #include "palpate/v1/gateway_status.pb.h"

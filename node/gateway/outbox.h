@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "node/gateway/plant.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/plant.h"
+#include "node/gateway/plant/subjects.h"
 
 namespace palpate::gateway {
 

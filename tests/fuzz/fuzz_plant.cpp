@@ -9,8 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "node/gateway/plant/subjects.h"
 #include "node/gateway/spool.h"
-#include "node/gateway/subjects.h"
 
 namespace {
 

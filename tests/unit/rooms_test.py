@@ -22,8 +22,8 @@ CORE = [
 NODE = CORE + [
     "node/files", "node/process", "node/wire", "node/csv", "node/check", "node/intake", "node/python", "node/client",
     "node/security",
-    "node/groups", "node/publish", "node", "node/gateway", "node/tool", "node/tool/text", "node/tool/drawing",
-    "node/tool/drawing/svg", "node/tool/view",
+    "node/groups", "node/publish", "node", "node/gateway/plant", "node/gateway/place", "node/gateway",
+    "node/tool", "node/tool/text", "node/tool/drawing", "node/tool/drawing/svg", "node/tool/view",
     "node/tool/commands", "node/tool/commands/check", "node/tool/commands/offline", "node/tool/commands/live",
     "node/tool/main",
 ]

@@ -1,4 +1,4 @@
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/subjects.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "node/gateway/group_feed.h"
+#include "node/gateway/place/group_feed.h"
 
 namespace palpate::gateway {
 

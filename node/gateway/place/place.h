@@ -19,11 +19,11 @@
 #include <string_view>
 #include <zmq.hpp>
 
-#include "node/gateway/contact_consumer.h"
-#include "node/gateway/contact_ledger.h"
-#include "node/gateway/group_feed.h"
-#include "node/gateway/node_feed.h"
-#include "node/gateway/plant.h"
+#include "node/gateway/place/contact_consumer.h"
+#include "node/gateway/place/contact_ledger.h"
+#include "node/gateway/place/group_feed.h"
+#include "node/gateway/place/node_feed.h"
+#include "node/gateway/plant/plant.h"
 #include "palpate/v1/gateway_status.pb.h"
 #include "palpate/v1/recognition.pb.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "node/gateway/plant.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/plant.h"
+#include "node/gateway/plant/subjects.h"
 
 namespace palpate::gateway {
 

@@ -1,4 +1,4 @@
-#include "node/gateway/plant_message.h"
+#include "node/gateway/plant/plant_message.h"
 
 #include <charconv>
 #include <cstdlib>

@@ -7,8 +7,8 @@
 #include <functional>
 #include <string>
 
-#include "node/gateway/plant.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/plant.h"
+#include "node/gateway/plant/subjects.h"
 
 namespace palpate::gateway {
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <zmq.hpp>
 
-#include "node/gateway/fed_node.h"
-#include "node/gateway/group_feed.h"
+#include "node/gateway/place/fed_node.h"
+#include "node/gateway/place/group_feed.h"
 #include "node/process/clock.h"
 #include "palpate/v1/header.pb.h"
 #include "palpate/v1/recognition.pb.h"

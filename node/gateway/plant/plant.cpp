@@ -1,4 +1,4 @@
-#include "node/gateway/plant.h"
+#include "node/gateway/plant/plant.h"
 
 #include <utility>
 #include <vector>

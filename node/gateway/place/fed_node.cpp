@@ -1,4 +1,4 @@
-#include "node/gateway/fed_node.h"
+#include "node/gateway/place/fed_node.h"
 
 #include <sys/prctl.h>
 #include <sys/wait.h>

@@ -1,4 +1,4 @@
-#include "node/gateway/node_feed.h"
+#include "node/gateway/place/node_feed.h"
 
 #include <chrono>
 #include <optional>

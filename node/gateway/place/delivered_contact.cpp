@@ -1,9 +1,9 @@
-#include "node/gateway/delivered_contact.h"
+#include "node/gateway/place/delivered_contact.h"
 
 #include <algorithm>
 
-#include "node/gateway/plant_message.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/plant/plant_message.h"
+#include "node/gateway/plant/subjects.h"
 #include "node/wire/parse.h"
 #include "palpate/v1/contact.pb.h"
 

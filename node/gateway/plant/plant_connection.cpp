@@ -1,4 +1,4 @@
-#include "node/gateway/plant_connection.h"
+#include "node/gateway/plant/plant_connection.h"
 
 #include <stdexcept>
 #include <utility>

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <unordered_map>
 
-#include "node/gateway/plant_connection.h"
+#include "node/gateway/plant/plant_connection.h"
 
 namespace palpate::gateway {
 

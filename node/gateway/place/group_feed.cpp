@@ -1,4 +1,4 @@
-#include "node/gateway/group_feed.h"
+#include "node/gateway/place/group_feed.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "node/gateway/contact_consumer.h"
+#include "node/gateway/place/contact_consumer.h"
 
 #include <spdlog/spdlog.h>
 
@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "node/files/printable.h"
-#include "node/gateway/delivered_contact.h"
-#include "node/gateway/streams.h"
+#include "node/gateway/place/delivered_contact.h"
+#include "node/gateway/plant/streams.h"
 
 namespace palpate::gateway {
 namespace {

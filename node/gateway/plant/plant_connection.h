@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "node/gateway/plant_message.h"
+#include "node/gateway/plant/plant_message.h"
 #include "node/process/bell.h"
 #include "node/process/clock.h"
 

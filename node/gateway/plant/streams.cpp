@@ -1,4 +1,4 @@
-#include "node/gateway/streams.h"
+#include "node/gateway/plant/streams.h"
 
 #include <chrono>
 #include <memory>

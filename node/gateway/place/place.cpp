@@ -1,4 +1,4 @@
-#include "node/gateway/place.h"
+#include "node/gateway/place/place.h"
 
 #include <spdlog/spdlog.h>
 
@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "node/files/printable.h"
-#include "node/gateway/delivered_contact.h"
-#include "node/gateway/streams.h"
-#include "node/gateway/subjects.h"
+#include "node/gateway/place/delivered_contact.h"
+#include "node/gateway/plant/streams.h"
+#include "node/gateway/plant/subjects.h"
 #include "node/wire/parse.h"
 
 namespace palpate::gateway {
