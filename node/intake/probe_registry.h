@@ -11,10 +11,9 @@
 
 #include "node/intake/rate_meter.h"
 #include "node/intake/sequence_tracker.h"
+#include "node/process/clock.h"
 
 namespace palpate {
-
-using SteadyTime = std::chrono::steady_clock::time_point;
 
 struct Probe {
   std::string name;

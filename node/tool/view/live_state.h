@@ -2,7 +2,6 @@
 // recognizers. Does no I/O, and is bounded whatever arrives.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -10,6 +9,7 @@
 #include <utility>
 
 #include "node/intake/rate_meter.h"
+#include "node/process/clock.h"
 #include "node/tool/contact_groups.h"
 #include "node/tool/view/live_history.h"
 #include "palpate/v1/contact.pb.h"
@@ -17,8 +17,6 @@
 #include "palpate/v1/recognition.pb.h"
 
 namespace palpate {
-
-using SteadyTime = std::chrono::steady_clock::time_point;
 
 /// Samples kept of one group's object, 32 bytes each. If there are more, every second one is
 /// dropped, and the page says how many are shown.
