@@ -172,11 +172,14 @@ struct Yardstick {
 /// True if the polynomial does not follow a section: it leaves more than noise, because only some
 /// of its samples lie in a bend (by chance this happens to fewer than one section in a million, and
 /// then costs only time), or its samples are too few for the two degrees more that reduced points
-/// need, so that it may swing between them (next to a cusp).
+/// need, so that it may swing between them (next to a cusp). Where no section shows the noise, what
+/// such a one leaves is it, unless it is so short that its halves would have no polynomial: what a
+/// quadratic or cubic leaves of eight samples is form more often than noise.
 bool is_not_followed(const Section& section, const Yardstick& yardstick) {
   const int dof = section.dof();
   return dof > 0 && (is_no_noise(section.chi2(), dof, yardstick.noise) ||
-                     (yardstick.shown_elsewhere && section.fit->lacks_degrees()));
+                     (section.fit->lacks_degrees() &&
+                      (yardstick.shown_elsewhere || section.points.size() < 2 * kFewestOfSection)));
 }
 
 /// True if most degrees of freedom are those of sections that have degrees to spare.
