@@ -228,6 +228,17 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
   return choice;
 }
 
+SideChoice fit_way_along(const CanonicalFit& parallel, SideChoice choice, const FitData& touches,
+                         const SideContext& by, const CurveOfCentres& centres) {
+  FitData turned = touches;
+  if (!by.work.allows() || set_directions(DirectionsOf::AllPoints, parallel, by.arcs.smooth,
+                                          &turned, by.work) < kSettledTurn) {
+    return choice;
+  }
+  SideChoice again = judged(fit_along(std::move(turned), choice.sides, by, {}, centres), by);
+  return again.log_evidence > choice.log_evidence ? again : choice;
+}
+
 SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideContext& by,
                          double highest, CurveOfCentres* centres) {
   const SmoothModel& smooth = by.arcs.smooth;

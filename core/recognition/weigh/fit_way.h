@@ -22,4 +22,10 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
 SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideContext& by,
                          double highest, CurveOfCentres* centres);
 
+/// The same way along the normals of `parallel`, a curve of another way that all points have, if it
+/// has more evidence so: curves through the same centres have the same normals, and those of a tip
+/// on a pin thinner than itself are far off.
+SideChoice fit_way_along(const CanonicalFit& parallel, SideChoice choice, const FitData& touches,
+                         const SideContext& by, const CurveOfCentres& centres);
+
 }  // namespace palpate

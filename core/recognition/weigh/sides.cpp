@@ -240,8 +240,11 @@ class TriedWays {
       SideChoice& choice = choices_[i];
       if (start_for(starts_, choice.sides) == nullptr) {
         const double of_others = highest_ - choice.log_of_normals;
-        choice =
-            judged(fit_way_again(std::move(choice), seen_.touches, now_, of_others, &centres_));
+        const auto parallel =
+            choice.expected && choice.log_evidence < of_others ? curve_of_all() : std::nullopt;
+        choice = judged(
+            parallel ? fit_way_along(*parallel, std::move(choice), seen_.touches, now_, centres_)
+                     : fit_way_again(std::move(choice), seen_.touches, now_, of_others, &centres_));
       }
     }
   }
@@ -258,17 +261,31 @@ class TriedWays {
     return choice;
   }
 
+  /// Of a choice whose curve all points have.
+  std::optional<CanonicalFit> curve_of(const SideChoice& choice) const {
+    const ClassFit& settled = *choice.settled;
+    return choice.refined->on_all ? to_canonical(*choice.refined, by_.arcs.data)
+                                  : to_canonical(settled, points_of(settled, choice.reduced));
+  }
+
+  /// The most probable curve that all points have; nullopt if none was found so far.
+  std::optional<CanonicalFit> curve_of_all() const {
+    const SideChoice* best = nullptr;
+    for (const SideChoice& choice : choices_) {
+      if (fits_all(choice, by_) && (best == nullptr || choice.log_evidence > best->log_evidence)) {
+        best = &choice;
+      }
+    }
+    return best != nullptr ? curve_of(*best) : std::nullopt;
+  }
+
   /// From a curve that all points have. Parallel curves have the same normals: those of the tips,
   /// whichever side they are on.
   void learn_directions(const SideChoice& choice) {
     if (now_.directions_told || !has_kept_tips(by_.arcs.smooth) || !are_strokes(seen_.touches)) {
       return;
     }
-    const ClassFit& settled = *choice.settled;
-    const auto curve = choice.refined->on_all
-                           ? to_canonical(*choice.refined, by_.arcs.data)
-                           : to_canonical(settled, points_of(settled, choice.reduced));
-    if (curve) {
+    if (const auto curve = curve_of(choice)) {
       tell_directions(*curve, by_.arcs.smooth, &seen_.touches, by_.work);
       take_told(choice.log_evidence);
     }
@@ -304,6 +321,7 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   const double log_price_of_others = log_odds(1.0 - kInsideProbability);
   sided->taken = 0;
   std::vector<double> evidences;  // logarithms, by what was measured and stated
+  bool is_ruled_out = false;      // the way that is taken
   double highest = -kInfinity;
   for (std::size_t i = 0; i < sided->choices.size(); ++i) {
     const SideChoice& choice = sided->choices[i];
@@ -319,6 +337,7 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
     if (i == 0 || weighed > highest) {
       highest = weighed;
       sided->taken = i;
+      is_ruled_out = ruled_out;
     }
   }
   double second = -kInfinity;
@@ -332,6 +351,12 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
     sided->margin = 0.0;  // nothing tells one from another
   } else {
     sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
+  }
+  // A cubic bends to both sides: what is outside of it as a whole is not told.
+  const bool has_outside = (class_bit(sided->choice().candidate) & kCubics) == 0;
+  if (is_ruled_out && has_outside) {
+    // The samples and what was said contradict one another: neither makes the other certain.
+    sided->margin = std::min(sided->margin, 0.0);
   }
 }
 

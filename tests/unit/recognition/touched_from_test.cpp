@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/curves/pose2.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/posterior/likelihood.h"
 #include "core/recognition/recognizer.h"
@@ -64,6 +65,47 @@ TEST(TouchedFrom, ACircleIsAPinOrABore) {
       EXPECT_EQ(told.status, RecognitionStatus::Recognized) << name_of(told.doubt);
       EXPECT_NEAR(told.shape.values[0], kCentresM + (inside ? kTipM : -kTipM), 10.0 * kSigmaM);
     }
+  }
+}
+
+// The centres' directions put the surface of a thin pin far off, so that it was of no class, and
+// the bore of the same centres was certain, against what was said.
+TEST(TouchedFrom, APinThinnerThanTheTipIsNoBore) {
+  constexpr double kPinM = 0.004;
+  constexpr double kWideTipM = 0.008;
+  constexpr double kLoudM = 2e-5;
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kLoudM);
+  const int scenes = test::stress_count(100);
+  int right = 0;
+  for (int i = 0; i < scenes; ++i) {
+    std::vector<std::vector<ContactSample>> strokes(2);
+    for (std::size_t patch = 0; patch < strokes.size(); ++patch) {
+      for (int k = 0; k < 100; ++k) {
+        const double angle = 2.5 * static_cast<double>(patch) + 0.012 * k;
+        const Vec2 centre = (kPinM + kWideTipM) * Vec2(std::cos(angle), std::sin(angle));
+        const double x = normal(rng);
+        strokes[patch].push_back({centre + Vec2(x, normal(rng)), kLoudM, 0});
+      }
+    }
+    const auto answer_with = [&](TouchedFrom touched_from) {
+      Recognizer recognizer(options_with(touched_from));
+      for (std::size_t patch = 0; patch < strokes.size(); ++patch) {
+        recognizer.add({0, static_cast<std::uint32_t>(patch), kWideTipM}, strokes[patch]);
+      }
+      return recognizer.recognize();
+    };
+    EXPECT_NE(answer_with(TouchedFrom::Unknown).status, RecognitionStatus::Recognized) << i;
+    const Recognition told = answer_with(TouchedFrom::Outside);
+    if (told.status == RecognitionStatus::Recognized) {
+      EXPECT_NEAR(told.shape.values[0], kPinM,
+                  kNegligibleDeviations * std::sqrt(told.covariance(0, 0)))
+          << i;
+      ++right;
+    }
+  }
+  if (test::counts_tell()) {
+    EXPECT_GE(right, 0.92 * scenes);  // what is asked of all curves that the samples determine
   }
 }
 
