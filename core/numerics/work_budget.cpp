@@ -9,31 +9,31 @@ double price_of(WorkKind kind) {
     case WorkKind::PolynomialRow:
       return 1.0;
     case WorkKind::ConicRow:
-      return 4.5;
+      return 3.2;
     case WorkKind::SoughtFoot:
-      return 20.0;
+      return 14.0;
     case WorkKind::FitStep:
       return 4.0;
     case WorkKind::AxisRow:
-      return 0.2;
+      return 0.15;
     case WorkKind::SeedRow:
-      return 0.3;
+      return 0.27;
     case WorkKind::PlacedRow:
-      return 0.6;
+      return 0.8;
     case WorkKind::PathRow:
       return 2.2;
     case WorkKind::PosteriorRow:
-      return 2.4;
+      return 2.2;
     case WorkKind::DriftRow:
-      return 0.7;
+      return 1.0;
     case WorkKind::OffsetCell:
       return 6.0;
     case WorkKind::SpikeRow:
-      return 0.6;
+      return 0.5;
     case WorkKind::SectionRow:
-      return 1.1;
+      return 5.5;
     case WorkKind::Sample:
-      return 1.1;
+      return 1.0;
   }
   return 1.0;
 }

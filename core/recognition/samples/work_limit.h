@@ -10,11 +10,11 @@
 namespace palpate {
 
 /// All that an answer may take, over the work of a clean ellipse. A planner can wait for eight, by
-/// the clock. An answer that is cut has spent six of these, and takes up to six tenths longer
-/// than its count says (`bench_worst_case`). Strokes that go there and back six times, with a noise
-/// that nobody states, take up to six, and are recognised (habits_test); half a one is for the
+/// the clock. An answer that is cut has spent five and a third of these, and takes up to half
+/// longer than its count says (`bench_worst_case`). Strokes that go there and back six times, with
+/// a noise that nobody states, are recognised within it (habits_test); half a one is for the
 /// covariance (recognizer.cpp).
-inline constexpr double kMostWork = 7.5;
+inline constexpr double kMostWork = 6.5;
 
 /// Work that a clean ellipse of so many samples in so many patches takes, at most.
 double work_of_clean_ellipse(std::size_t samples, std::size_t patches);

@@ -133,24 +133,51 @@ int measure_prices(int tries, std::uint64_t seed, bench::InputKind kind, int mos
   return 0;
 }
 
-/// The counted work of clean ellipses, the middle one of some, beside what work_limit.h says.
+/// The counted work of an input whose noise is ten times longer one way, and stated so.
+double work_with_covariances(TouchedInput input, std::uint32_t seed) {
+  constexpr double kLonger = 10.0;
+  std::mt19937_64 rng(seed);
+  std::normal_distribution<double> normal;
+  Recognizer recognizer;
+  for (bench::TouchedPatch& patch : input) {
+    std::vector<SampleDetail> details;
+    for (ContactSample& sample : patch.samples) {
+      const double variance_m2 = sample.sigma_m * sample.sigma_m;
+      sample.position_m.x() += std::sqrt(kLonger * kLonger - 1.0) * sample.sigma_m * normal(rng);
+      details.emplace_back().covariance_m2 =
+          variance_m2 * Eigen::Vector3d(kLonger * kLonger, 0.0, 1.0);
+      sample.sigma_m = mean_sigma_m(details.back().covariance_m2);
+    }
+    recognizer.add(patch.context, patch.samples, details);
+  }
+  return recognizer.recognize().work.spent();
+}
+
+/// The counted work of clean ellipses, the middle one of some, beside what work_limit.h says, and
+/// beside that of ellipses whose samples state covariances.
 int measure_ellipses() {
   constexpr std::array kPatches = {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64};
   constexpr std::array kSamples = {1, 8, 16, 32, 64, 128, 256, 512, 1024};  // of a patch
   constexpr std::uint32_t kSeeds = 9;
-  std::printf("%8s %8s %12s %12s %8s\n", "patches", "samples", "work", "work_limit.h", "ratio");
+  std::printf("%8s %8s %12s %12s %8s %12s %8s\n", "patches", "samples", "work", "work_limit.h",
+              "ratio", "covariances", "ratio");
   for (const int patches : kPatches) {
     for (const int samples : kSamples) {
       const std::vector<ContactSample> any(static_cast<std::size_t>(samples));
       const TouchedInput like(static_cast<std::size_t>(patches), {{}, any});
       std::array<double, kSeeds> work{};
+      std::array<double, kSeeds> of_covariances{};
       for (std::uint32_t seed = 0; seed < kSeeds; ++seed) {
-        work.at(seed) = cost_once(bench::clean_ellipse_like(like, seed + 1)).work.spent();
+        const TouchedInput ellipse = bench::clean_ellipse_like(like, seed + 1);
+        work.at(seed) = cost_once(ellipse).work.spent();
+        of_covariances.at(seed) = work_with_covariances(ellipse, seed + 1);
       }
       std::sort(work.begin(), work.end());
+      std::sort(of_covariances.begin(), of_covariances.end());
       const double told = work_of_clean_ellipse(bench::sample_count(like), like.size());
-      std::printf("%8d %8d %12.0f %12.0f %8.2f\n", patches, samples * patches, work[kSeeds / 2],
-                  told, work[kSeeds / 2] / told);
+      std::printf("%8d %8d %12.0f %12.0f %8.2f %12.0f %8.2f\n", patches, samples * patches,
+                  work[kSeeds / 2], told, work[kSeeds / 2] / told, of_covariances[kSeeds / 2],
+                  of_covariances[kSeeds / 2] / work[kSeeds / 2]);
       std::fflush(stdout);
     }
   }

@@ -10,11 +10,10 @@ namespace {
 
 /// Direction of the way past sample i: of the parabola through samples before and after it, near an
 /// end through the first three. They are so far apart that noise of `sigma_m` tells the direction,
-/// but at most half a short block. Zero where the way is none.
+/// if any are. Zero where the way is none.
 Vec2 way_past(std::size_t i, std::span<const StoredSample> samples, double sigma_m) {
-  constexpr std::size_t kMostReach = 8;
   Vec2 way = Vec2::Zero();
-  const std::size_t most = std::min(kMostReach, (samples.size() - 1) / 2);
+  const std::size_t most = (samples.size() - 1) / 2;
   for (std::size_t reach = 1; reach <= most; reach *= 2) {
     const std::size_t first = std::min(i - std::min(i, reach), samples.size() - 1 - 2 * reach);
     const double t = static_cast<double>(i - first) / static_cast<double>(reach);  // in [0, 2]
