@@ -21,7 +21,6 @@ double price_of(WorkKind kind) {
     case WorkKind::PlacedRow:
       return 0.8;
     case WorkKind::PathRow:
-      return 2.2;
     case WorkKind::PosteriorRow:
       return 2.2;
     case WorkKind::DriftRow:
