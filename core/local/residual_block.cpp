@@ -163,7 +163,6 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
   }
   const double per_metre = 2.0 / extent_m_;
   Pair steepest = Pair::Zero();
-  Pair largest = Pair::Zero();
   const double most_leverage = kMaxExtrapolation * loudest_ * loudest_;
   for (Lane& lane : lanes_) {
     const Pair slope = per_metre * lane.slope;
@@ -176,10 +175,8 @@ LocalStatus ResidualBlock::fit(std::span<const Vec2> samples, std::span<const st
     lane.studentised_m = (lane.use == 0.0 && lane.leverage > most_leverage)
                              .select(std::numeric_limits<double>::infinity(), lane.studentised_m);
     steepest = steepest.max(lane.use * slope.abs());
-    largest = largest.max(lane.studentised_m.abs());
   }
   steepest_ = steepest.maxCoeff();
-  largest_m_ = largest.maxCoeff();
   return LocalStatus::Ok;
 }
 

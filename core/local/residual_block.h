@@ -48,9 +48,6 @@ class ResidualBlock {
     return lanes_[i / kWidth].studentised_m[static_cast<Eigen::Index>(i % kWidth)];
   }
 
-  /// Largest |studentised(i)|. [m]
-  double largest() const { return largest_m_; }
-
   /// Variance of the fit at a sample, in units of that of the loudest sample in use. Beyond it the
   /// fit predicts a sample to no better than about three standard deviations of the noise.
   static constexpr double kMaxExtrapolation = 10.0;
@@ -102,7 +99,6 @@ class ResidualBlock {
   std::size_t size_ = 0;
   double extent_m_ = 0.0;
   double steepest_ = 0.0;
-  double largest_m_ = 0.0;
   double loudest_ = 1.0;
   double backtrack_m_ = 0.0;
   double first_gap_ = 0.0;

@@ -10,7 +10,8 @@ namespace palpate {
 
 /// The noise of each sample across and along the way of the stroke there, over the median of what
 /// it is across. Form is no noise that differs: `form_deviation_m` is added to each in quadrature.
-/// Empty where all are the same, or one is neither stated nor `default_sigma_m` (0: not known).
+/// Empty where all are the same, or one is neither stated nor `default_sigma_m` (0: not known), or
+/// none across the way.
 std::vector<RelativeNoise> relative_noise(const StoredPatch& patch, double default_sigma_m,
                                           double form_deviation_m);
 
