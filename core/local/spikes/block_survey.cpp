@@ -46,6 +46,9 @@ constexpr double kNormOfThird = 4.47213595499957939;  // sqrt(1 + 9 + 9 + 1)
 /// `noise_of(RelativeNoise)`, over kNormOfThird sigma.
 template <typename NoiseOf>
 double noise_of_third(const SearchedSamples& four, const NoiseOf& noise_of) {
+  if (four.noise.empty()) {
+    return 1.0;
+  }
   const auto variance = [&](std::size_t i) {
     const double noise = noise_of(four.noise_of(i));
     return noise * noise;

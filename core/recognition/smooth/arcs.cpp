@@ -26,9 +26,7 @@ bool set_noise(FitData* data, SmoothModel* smooth) {
 /// Takes what rounding leaves for the noise.
 void take_rounding(FitData* data, Arcs* arcs) {
   scale_noise(data->reading_noise / rms_sigma(*data), data, &arcs->smooth);
-  const std::size_t before = arcs->smooth.fitted;
   arcs->smooth = fit_smooth_model(data, true);
-  arcs->smooth.fitted += before;
   arcs->sigma_known = true;
   arcs->may_not_follow = false;
 }
@@ -70,7 +68,9 @@ Arcs smooth_arcs(FitData data, const SectionSource& source) {
     arcs.may_be_rounding = !shows_noise(arcs.smooth);
     if (!arcs.may_be_rounding) {
       // Sections may follow rounded readings to the last digit, from step to step.
+      const std::size_t before = arcs.smooth.fitted;
       take_rounding(&data, &arcs);
+      arcs.smooth.fitted += before;
     }
   }
   arcs.sigma = rms_sigma(data);

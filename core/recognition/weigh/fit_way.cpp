@@ -195,6 +195,15 @@ SideChoice judged(SideChoice choice, const SideContext& by) {
   return choice;
 }
 
+/// The touches with the directions of a curve; nullopt where these are settled already.
+std::optional<FitData> turned_along(const CanonicalFit& curve, const FitData& touches,
+                                    const SideContext& by) {
+  FitData turned = touches;
+  const double turn =
+      set_directions(DirectionsOf::AllPoints, curve, by.arcs.smooth, &turned, by.work);
+  return turn < kSettledTurn ? std::nullopt : std::optional(std::move(turned));
+}
+
 double largest_tip_m(const FitData& touches) {
   double largest = 0.0;
   for (const FitPoint& point : touches.points) {
@@ -230,12 +239,11 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
 
 SideChoice fit_way_along(const CanonicalFit& parallel, SideChoice choice, const FitData& touches,
                          const SideContext& by, const CurveOfCentres& centres) {
-  FitData turned = touches;
-  if (!by.work.allows() || set_directions(DirectionsOf::AllPoints, parallel, by.arcs.smooth,
-                                          &turned, by.work) < kSettledTurn) {
+  auto turned = by.work.allows() ? turned_along(parallel, touches, by) : std::nullopt;
+  if (!turned) {
     return choice;
   }
-  SideChoice again = judged(fit_along(std::move(turned), choice.sides, by, {}, centres), by);
+  SideChoice again = judged(fit_along(*std::move(turned), choice.sides, by, {}, centres), by);
   return again.log_evidence > choice.log_evidence ? again : choice;
 }
 
@@ -259,9 +267,8 @@ SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideCo
     }
   };
   const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
-    FitData turned = touches;
-    if (set_directions(DirectionsOf::AllPoints, curve, smooth, &turned, by.work) >= kSettledTurn) {
-      take(turned, start);
+    if (const auto turned = turned_along(curve, touches, by)) {
+      take(*turned, start);
     }
   };
   if (choice.along_told || !may_gain()) {

@@ -319,25 +319,27 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   // the others are excluded: the margin does without it.
   constexpr double kInsideProbability = 0.01;
   const double log_price_of_others = log_odds(1.0 - kInsideProbability);
+  // A line has no bend to be outside of.
+  const auto has_bend = [](const SideChoice& choice) {
+    return choice.candidate != CurveClass::Line;
+  };
+  // It has the tips in all bends where the expected way has them outside, or the reverse: whoever
+  // says the one rules out the other.
+  const auto is_ruled_out = [&](const SideChoice& choice) {
+    return choice.contrary && has_bend(choice) && by.touched_from != TouchedFrom::Unknown;
+  };
   sided->taken = 0;
   std::vector<double> evidences;  // logarithms, by what was measured and stated
-  bool is_ruled_out = false;      // the way that is taken
   double highest = -kInfinity;
   for (std::size_t i = 0; i < sided->choices.size(); ++i) {
     const SideChoice& choice = sided->choices[i];
-    // A line has no bend to be outside of.
-    const bool has_bend = choice.candidate != CurveClass::Line;
-    // It has the tips in all bends where the expected way has them outside, or the reverse: whoever
-    // says the one rules out the other.
-    const bool ruled_out = choice.contrary && has_bend && by.touched_from != TouchedFrom::Unknown;
     evidences.push_back(choice.log_evidence + choice.log_of_normals -
-                        (ruled_out ? kNegligibleLogOdds : 0.0));
+                        (is_ruled_out(choice) ? kNegligibleLogOdds : 0.0));
     const double weighed =
-        evidences[i] - (!choice.expected && has_bend ? log_price_of_others : 0.0);
+        evidences[i] - (!choice.expected && has_bend(choice) ? log_price_of_others : 0.0);
     if (i == 0 || weighed > highest) {
       highest = weighed;
       sided->taken = i;
-      is_ruled_out = ruled_out;
     }
   }
   double second = -kInfinity;
@@ -354,7 +356,7 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   }
   // A cubic bends to both sides: what is outside of it as a whole is not told.
   const bool has_outside = (class_bit(sided->choice().candidate) & kCubics) == 0;
-  if (is_ruled_out && has_outside) {
+  if (is_ruled_out(sided->choice()) && has_outside) {
     // The samples and what was said contradict one another: neither makes the other certain.
     sided->margin = std::min(sided->margin, 0.0);
   }
