@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/recognition/samples/cleaned/repeated_touches.h"
+#include "core/recognition/samples/cleaned/chained_touches.h"
 
 namespace palpate {
 

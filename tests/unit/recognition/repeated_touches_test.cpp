@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <random>
 #include <vector>
 
+#include "core/recognition/samples/cleaned/chained_touches.h"
 #include "core/recognition/samples/cleaned/clean_patches.h"
 #include "tests/support/test_rng.h"
 #include "tests/support/unbounded_work.h"
@@ -148,6 +150,41 @@ TEST(RepeatedTouches, AlongACurveStayAsTheyAre) {
     }
     EXPECT_EQ(places_of(touches), touches.size()) << angle;
   }
+}
+
+/// However close they are: noise puts many of them next to each other, but none of them apart from
+/// the rest.
+TEST(RepeatedTouches, DenselyAlongACurveStayAsTheyAre) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, kOneSigma);
+  for (const double angle : {0.0, 0.7, 0.5 * kPi}) {
+    for (const double step : {0.02, 0.1, 0.5}) {  // in deviations
+      std::vector<StoredPatch> touches;
+      for (int i = 0; i * step < 200.0; ++i) {
+        const double x = noise(rng);
+        const Vec2 place = step * i * kOneSigma * Vec2(std::cos(angle), std::sin(angle));
+        touches.push_back(touch_at(place + Vec2(x, noise(rng))));
+      }
+      std::shuffle(touches.begin(), touches.end(), rng);
+      EXPECT_EQ(places_of(touches), touches.size()) << angle << ", " << step;
+    }
+  }
+}
+
+TEST(RepeatedTouches, ManyTimesAtManyPlacesAreThesePlaces) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, kOneSigma);
+  constexpr int kPlaces = 12;
+  std::vector<StoredPatch> touches;
+  for (int i = 0; i < 300 * kPlaces; ++i) {
+    const double x = noise(rng);
+    touches.push_back(touch_at(20.0 * kOneSigma * Vec2(i % kPlaces, 0.0) + Vec2(x, noise(rng))));
+  }
+  // Noise puts a touch so far from all others of its place less than once in a thousand times, and
+  // makes a place scatter too much to be one as seldom.
+  const std::size_t places = places_of(touches);
+  EXPECT_LE(places, kPlaces + 4U);
+  EXPECT_GE(places, std::size_t{kPlaces});
 }
 
 TEST(RepeatedTouches, OfStrokesAreNoTouches) {
