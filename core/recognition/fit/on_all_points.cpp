@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/recognition/fit/orthogonal/counted_in_order.h"
 #include "core/recognition/fit/orthogonal/measured_normal.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
 #include "core/recognition/fit/polynomial_fits.h"
@@ -204,8 +205,13 @@ bool may_be_stroked(const PolynomialFit& fit, const FitData& data) {
   return is_touchable(fit, data) && !leaps(fit, data);
 }
 
-/// Of a fit and its rival what may be touched so; nullopt if neither.
-std::optional<ClassFit> of_what_it_says(ClassFit fit, const FitData& data) {
+/// Of a fit and its rival what may be touched so, with strokes in order along it; nullopt if
+/// neither.
+std::optional<ClassFit> of_what_it_says(ClassFit fit, const FitData& data, WorkBudget& work) {
+  for (std::optional<PolynomialFit>* polynomial : {&fit.polynomial, &fit.rival}) {
+    if (*polynomial) *polynomial = counted_in_order(*std::move(*polynomial), data, work);
+  }
+  if (fit.polynomial) fit.chi2 = fit.polynomial->chi2;
   if (fit.rival && !may_be_stroked(*fit.rival, data)) {
     fit.rival.reset();
   }
@@ -313,7 +319,7 @@ std::optional<ClassFit> refine_on_all(const ClassFit& fit, const SmoothModel& sm
       refined = std::move(again);
     }
   }
-  return of_what_it_says(std::move(refined), data);
+  return of_what_it_says(std::move(refined), data, work);
 }
 
 std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBudget& work) {
@@ -323,7 +329,7 @@ std::optional<ClassFit> polish(const ClassFit& fit, const FitData& data, WorkBud
     start.rival.reset();  // one optimum: it need not be walked to twice
   }
   return of_what_it_says(
-      refine_parts(std::move(start), data.points, kPolishEffort, RivalOf::Best, work), data);
+      refine_parts(std::move(start), data.points, kPolishEffort, RivalOf::Best, work), data, work);
 }
 
 }  // namespace palpate

@@ -101,9 +101,9 @@ inline PlacedPoint follow_foot_point(const PolynomialCoefficients& c, const Vec2
   return placed;
 }
 
-/// The parameter of the curve's nearest place to `p`, anywhere on the curve; 0 if the curve is a
-/// point.
-inline double nearest_parameter(const PolynomialCoefficients& c, const Vec2& p) {
+/// Calls `visit(t)` where the distance of `p` from the curve is stationary.
+template <typename Visit>
+void visit_stationary(const PolynomialCoefficients& c, const Vec2& p, const Visit& visit) {
   // (C(t) - p) . C'(t) = 0.
   const Vec2 away = c.col(0) - p;
   Polynomial<5> condition;
@@ -111,9 +111,15 @@ inline double nearest_parameter(const PolynomialCoefficients& c, const Vec2& p) 
       3.0 * (away.dot(c.col(3)) + c.col(1).dot(c.col(2))),
       4.0 * c.col(1).dot(c.col(3)) + 2.0 * c.col(2).squaredNorm(), 5.0 * c.col(2).dot(c.col(3)),
       3.0 * c.col(3).squaredNorm();
+  visit_real_roots<5>(condition, visit);
+}
+
+/// The parameter of the curve's nearest place to `p`, anywhere on the curve; 0 if the curve is a
+/// point.
+inline double nearest_parameter(const PolynomialCoefficients& c, const Vec2& p) {
   double nearest = 0.0;
   double least = std::numeric_limits<double>::infinity();
-  visit_real_roots<5>(condition, [&](double t) {
+  visit_stationary(c, p, [&](double t) {
     const double square = (position_at(c, t) - p).squaredNorm();
     if (square < least) {
       least = square;
