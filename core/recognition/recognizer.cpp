@@ -174,7 +174,7 @@ class Recognizer::Impl {
   Weighed counted(const Touched& touched, WorkBudget& work) {
     const WorkBudget::Reserve for_moments(work, kShareOfMoments);
     const CountedSamples samples(counting_options(), clean_);
-    return last_.followed_or_searched(samples, touched, memory_.sample_count(),
+    return last_.followed_or_searched(samples, touched, {memory_.sample_count(), forgotten_},
                                       options_.recognized_probability, work);
   }
 

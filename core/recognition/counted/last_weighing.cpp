@@ -9,7 +9,8 @@ namespace palpate {
 namespace {
 
 /// A search takes as much as some followed weighings do: ten searches while a patch grows tenfold.
-constexpr double kGrowth = 1.25;
+/// Samples that are forgotten change the answer as much as those that come.
+constexpr double kChange = 0.25;
 
 /// Whether a class that had more than `most` has less than a fiftieth of it left. New samples of a
 /// true class do that to its probability once in fifty times at most (Ville's inequality: against
@@ -27,14 +28,14 @@ bool has_lost_one(const ClassProbabilities& now, const ClassProbabilities& befor
 }  // namespace
 
 Weighed LastWeighing::followed_or_searched(const CountedSamples& counted, const Touched& touched,
-                                           std::size_t samples, double recognized_probability,
+                                           const MemorySize& memory, double recognized_probability,
                                            WorkBudget& work) {
-  auto followed = this->followed(counted, touched, samples, recognized_probability, work);
+  auto followed = this->followed(counted, touched, memory, recognized_probability, work);
   const bool is_followed = followed.has_value();
   Weighed weighed = is_followed ? *std::move(followed) : counted.searched(touched, work);
   // Samples that are set aside, or taken back, are another matter: what is followed next is the
   // weighing of all.
-  Kept kept{weighed.w.starts, weighed.w.probabilities, is_followed ? last_->samples : samples,
+  Kept kept{weighed.w.starts, weighed.w.probabilities, is_followed ? last_->memory : memory,
             touched.data.patches.size()};
   weighed = counted.settled(std::move(weighed), touched.patches, work);
   kept.explains = weighed.explains;
@@ -47,10 +48,12 @@ Weighed LastWeighing::followed_or_searched(const CountedSamples& counted, const 
 }
 
 std::optional<Weighed> LastWeighing::followed(const CountedSamples& counted, const Touched& touched,
-                                              std::size_t samples, double recognized_probability,
+                                              const MemorySize& memory,
+                                              double recognized_probability,
                                               WorkBudget& work) const {
   if (!last_ || last_->patches != touched.data.patches.size() ||
-      static_cast<double>(samples) > kGrowth * static_cast<double>(last_->samples)) {
+      static_cast<double>(memory.changes() - last_->memory.changes()) >
+          kChange * static_cast<double>(last_->memory.samples)) {
     return std::nullopt;
   }
   Weighed weighed = counted.followed(touched, last_->starts, last_->explains, last_->off_m, work);

@@ -83,5 +83,48 @@ TEST(FollowedAnswers, OfAParabolaHaveTheSplineThatASearchHas) {
   }
 }
 
+/// A memory that is full forgets a patch for each that begins: their number stays, and nothing of
+/// the answer need. Followed on, a class that was lost once stayed lost, and what was left was
+/// certain.
+TEST(FollowedAnswers, TellOnlyOfPatchesThatAreInMemory) {
+  constexpr std::uint32_t kKept = 2;
+  constexpr std::uint32_t kPatches = 6;
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < test::stress_count(30); ++i) {
+    test::SceneOptions options;
+    options.patches = kPatches;
+    options.points_per_patch = 40;
+    options.sigma_over_size = 1e-3;
+    options.least_fraction = 0.1;
+    options.most_fraction = 0.4;
+    const CurveClass curve_class =
+        kCurveClasses[static_cast<std::size_t>(i) % kCurveClasses.size()];
+    const test::Scene scene = test::random_scene(curve_class, options, rng);
+    const double sigma_m = i % 2 == 0 ? scene.sigma_m : 0.0;
+    RecognizerOptions few;
+    few.memory.most_patches = kKept;
+    Recognizer followed(few);
+    const auto add = [&](std::uint32_t p, Recognizer* recognizer) {
+      for (const Vec2& place_m : scene.patches[p]) {
+        const ContactSample sample{place_m, sigma_m, 0};
+        recognizer->add({.patch = p}, {&sample, 1});
+      }
+    };
+    for (std::uint32_t p = 0; p < kPatches; ++p) {
+      add(p, &followed);
+      const Recognition answer = followed.recognize();
+      if (p < kKept) continue;
+      Recognizer anew(few);
+      for (std::uint32_t q = p + 1 - kKept; q <= p; ++q) add(q, &anew);
+      const Recognition searched = anew.recognize();
+      for (const Hypothesis& hypothesis : searched.hypotheses) {
+        const Hypothesis* found = test::hypothesis_of(answer, hypothesis.shape.curve_class);
+        EXPECT_NEAR(found != nullptr ? found->probability : 0.0, hypothesis.probability, 1e-6)
+            << i << ", patch " << p << ": " << name_of(hypothesis.shape.curve_class);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace palpate
