@@ -6,18 +6,31 @@
 #include "core/numerics/probability/log_add.h"
 
 namespace palpate {
+namespace {
+
+/// With fewer degrees of freedom the sections tell the noise to less than a tenth, by which what
+/// the prior leaves of ten coordinates is off by a factor of e: then paths are integrated over it.
+constexpr int kDegreesThatTellNoise = 50;
+
+}  // namespace
 
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
                              WorkBudget& work) {
   Evidences evidences;
   evidences.inflation = likelihood.inflation();
-  evidences.free_form = free_form(smooth, evidences.inflation, work);
+  const bool is_told = likelihood.sigma_known || smooth.dof() >= kDegreesThatTellNoise;
+  evidences.free_form = is_told || likelihood.coherent_variance > 0.0
+                            ? free_form(smooth, evidences.inflation, work)
+                            : free_form_over_noise(smooth, likelihood, work);
   return evidences;
 }
 
 double log_evidence_of_paths(const Likelihood& likelihood, const Evidences& evidences,
                              double smooth_chi2) {
   const FreeForm& paths = evidences.free_form;
+  if (paths.log_over_noise) {
+    return *paths.log_over_noise + paths.log_occam;
+  }
   return likelihood.log_evidence(smooth_chi2 + likelihood.inflation() * paths.chi2, paths.log_occam,
                                  paths.determined);
 }

@@ -6,8 +6,10 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "core/numerics/matrices/triangular_root.h"
+#include "core/numerics/probability/log_add.h"
 #include "core/numerics/probability/negligible.h"
 
 namespace palpate {
@@ -234,6 +236,103 @@ FreeForm free_form(const SmoothModel& smooth, double inflation, WorkBudget& work
   from(kMiddleSize - 1, -1);
   best.log_occam += std::log(sum / static_cast<double>(kSizes.size()));
   return best;
+}
+
+namespace {
+
+/// A density's logarithm about its maximum.
+struct Peak {
+  double at = 0.0;
+  double log_top = -std::numeric_limits<double>::infinity();
+  double log_mass = -std::numeric_limits<double>::infinity();  ///< by Laplace's formula
+};
+
+/// Walks up from `at` in steps of `step` and less, to `width`. `log_at(u)`: the density's
+/// logarithm.
+template <typename LogAt>
+Peak peak_from(const LogAt& log_at, double at, double step, double width) {
+  Peak peak{at, log_at(at)};
+  if (!std::isfinite(peak.log_top)) {
+    return peak;
+  }
+  double before = 0.0;
+  double after = 0.0;
+  for (bool is_last = false; !is_last; step = std::max(0.5 * step, width)) {
+    is_last = step <= width;
+    before = log_at(peak.at - step);
+    after = log_at(peak.at + step);
+    while (std::max(before, after) > peak.log_top) {
+      const bool is_up = after > before;
+      peak.at += is_up ? step : -step;
+      (is_up ? before : after) = std::exchange(peak.log_top, is_up ? after : before);
+      (is_up ? after : before) = log_at(peak.at + (is_up ? step : -step));
+    }
+  }
+  // A flat density is no wider than all noise there is.
+  constexpr double kFlattest = 1e-2;
+  const double bend = std::max((2.0 * peak.log_top - before - after) / (width * width), kFlattest);
+  peak.log_mass = peak.log_top + 0.5 * std::log(2.0 * std::numbers::pi / bend);
+  return peak;
+}
+
+}  // namespace
+
+FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likelihood,
+                              WorkBudget& work) {
+  const double left = likelihood.left(smooth.chi2);
+  const double weight = 1.0 / std::sqrt(likelihood.inflation());
+  const auto log_of_size = [&](double size) {
+    return [&, size](double u) {  // the log of the noise
+      work.spend(WorkKind::PathRow, smooth.reduced.points.size() + smooth.sections.size());
+      const FreeForm there = paths_of(smooth, size, weight * std::exp(-u));
+      const double value =
+          there.log_occam - 0.5 * (there.chi2 + left * std::exp(-2.0 * u)) - likelihood.samples * u;
+      return std::isfinite(value) ? value : -std::numeric_limits<double>::infinity();
+    };
+  };
+  // The standard deviation of the log of a noise that so many samples tell.
+  const double width = 1.0 / std::sqrt(2.0 * likelihood.samples);
+  const double finest = 0.5 * std::log(likelihood.chi2_floor / likelihood.samples);
+  const double largest = std::max(-std::log(rms_sigma(smooth.reduced)), finest + 1.0);
+  constexpr int kStarts = 8;
+  const double apart = (largest - finest) / kStarts;
+  const auto log_of_middle = log_of_size(kSizes[kMiddleSize]);
+  double start = finest;
+  for (double log_top = -std::numeric_limits<double>::infinity(), u = finest; u <= largest;
+       u += apart) {
+    const double value = log_of_middle(u);
+    start = value > log_top ? u : start;
+    log_top = std::max(log_top, value);
+  }
+  Peak best = peak_from(log_of_middle, start, 0.5 * apart, width);
+  double sum = best.log_mass;
+  // The evidence has one maximum: outwards from the middle until it has fallen off.
+  const auto from = [&](std::size_t s, int step, double at) {
+    double before = best.log_mass;
+    for (auto i = static_cast<int>(s); i >= 0 && i < static_cast<int>(kSizes.size()); i += step) {
+      constexpr double kNear = 4.0;  // from one size to the next, in widths
+      const Peak peak =
+          peak_from(log_of_size(kSizes[static_cast<std::size_t>(i)]), at, kNear * width, width);
+      if (!std::isfinite(peak.log_top)) {
+        break;
+      }
+      sum = log_add(sum, peak.log_mass);
+      if (peak.log_mass < before && peak.log_mass < best.log_mass - kTailOfDensity) {
+        break;
+      }
+      before = peak.log_mass;
+      at = peak.at;
+      best = peak.log_top > best.log_top ? peak : best;
+    }
+  };
+  const double middle = best.at;
+  from(kMiddleSize + 1, 1, middle);
+  from(kMiddleSize - 1, -1, middle);
+  FreeForm paths;
+  paths.noise = std::exp(best.at);
+  // Twice: Likelihood::log_evidence leaves out the half of its integral.
+  paths.log_over_noise = std::log(2.0) + sum - std::log(static_cast<double>(kSizes.size()));
+  return paths;
 }
 
 }  // namespace palpate

@@ -53,6 +53,14 @@ Arcs arcs_of_noise(Arcs arcs, double times) {
   return arcs;
 }
 
+Arcs arcs_in_units_of(Arcs arcs, double times) {
+  scale_noise(times, &arcs.data, &arcs.smooth);
+  arcs.sigma = rms_sigma(arcs.data);
+  return arcs;
+}
+
+bool is_noise_unseen(const Arcs& arcs) { return !arcs.sigma_known && !shows_noise(arcs.smooth); }
+
 Arcs smooth_arcs(FitData data, const SectionSource& source) {
   Arcs arcs;
   const bool sigma_known = data.noise_is_stated;

@@ -33,6 +33,12 @@ Arcs arcs_of_stated_noise(Arcs arcs);
 /// The same where nobody states the noise, by so many times the noise that the sections have shown.
 Arcs arcs_of_noise(Arcs arcs, double times);
 
+/// The same arcs with so many times the noise, whose size stays unknown.
+Arcs arcs_in_units_of(Arcs arcs, double times);
+
+/// Whether the noise is neither stated nor shown by the sections.
+bool is_noise_unseen(const Arcs& arcs);
+
 /// Fits the smooth model. `data`: from make_fit_data. If the noise is not stated, sets it from the
 /// model's residuals. `source`: fit_smooth_model's.
 Arcs smooth_arcs(FitData data, const SectionSource& source = {});

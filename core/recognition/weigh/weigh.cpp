@@ -190,7 +190,9 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
 
 /// The arcs by less noise, where a class that leaves no more than noise leaves less than the smooth
 /// model. No class can where sections follow the path: these do not, and neither they nor the
-/// reduced points tell anything of the other classes. nullopt where none does.
+/// reduced points tell anything of the other classes. Where the sections show no noise, the arcs in
+/// units of what the best class leaves: what coordinates are determined is told by noise of about
+/// that size, and not by none. nullopt where there is nothing to better.
 std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   if (!best || !arcs->may_not_follow) {
     return std::nullopt;
@@ -204,7 +206,7 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   const double dof =
       static_cast<double>(residuals) - degrees_of_freedom(best->canonical.shape.curve_class);
   const double smooth_dof = arcs->smooth.dof();
-  if (dof < kFewestDegreesOfNoise || smooth_dof < kFewestDegreesOfNoise) {
+  if (dof < kFewestDegreesOfNoise) {
     return std::nullopt;
   }
   // Of its standard deviations; a false alarm, one in a thousand, costs a weighing by less noise.
@@ -212,6 +214,11 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   // Log variances of normal samples have the variance 2 / dof.
   const double least = kExact / arcs->sigma;
   const double variance = std::max(best->chi2 / dof, least * least);
+  if (smooth_dof < kFewestDegreesOfNoise) {
+    arcs->may_not_follow = false;
+    return variance > 1.0 ? std::optional(arcs_in_units_of(std::move(*arcs), std::sqrt(variance)))
+                          : std::nullopt;
+  }
   const bool better = std::log(arcs->smooth.chi2 / smooth_dof / variance) >
                       kSeen * std::sqrt(2.0 / dof + 2.0 / smooth_dof);
   return better ? std::optional(arcs_of_noise(std::move(*arcs), std::sqrt(variance)))
@@ -299,11 +306,25 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   return weighing;
 }
 
+/// Where the noise is unseen: the arcs in units of what free paths along the strokes leave. By any
+/// less no class would be in reach. Single touches leave nothing.
+Arcs in_units_of_paths(Arcs arcs, const WeighOptions& options, WorkBudget& work) {
+  const bool has_strokes = std::any_of(arcs.data.patches.begin(), arcs.data.patches.end(),
+                                       [](const PatchSpan& patch) { return patch.size() > 1; });
+  if (!is_noise_unseen(arcs) || !has_strokes) {
+    return arcs;
+  }
+  const Likelihood likelihood = likelihood_of(arcs, options.form_deviation_m);
+  const double noise = free_form_over_noise(arcs.smooth, likelihood, work).noise;
+  return arcs_in_units_of(std::move(arcs), noise);
+}
+
 }  // namespace
 
 Weighing weigh(FitData data, std::span<const StoredPatch> patches, WorkBudget& work,
                const WeighOptions& options, std::span<const SidedStart> starts) {
   Arcs arcs = smooth_arcs(std::move(data), {patches, options.kept_sections});
+  arcs = in_units_of_paths(std::move(arcs), options, work);
   return weigh_arcs(std::move(arcs), patches, work, options, starts);
 }
 

@@ -117,6 +117,39 @@ TEST(UnstatedNoise, OfShortStrokesOfAnEdgeMakesItNoPartOfNoClass) {
   }
 }
 
+// No polynomial leaves anything of five samples. Free paths through all points were then weighed as
+// if there were no noise, beside which no class can be: edges were certainly of no class, and
+// circles ellipses, whose further parameters were told by no noise as well.
+TEST(UnstatedNoise, OfStrokesTooShortToShowItIsWhatPathsAndClassesLeave) {
+  std::mt19937_64 rng = test::test_rng();
+  struct Case {
+    StrokesOfPart part;
+    bool tells_the_class;
+  };
+  for (const Case& one :
+       {Case{{5, 7, 18.0, 36.0, 0.0, false}, false}, Case{{5, 5, 40.0, 80.0, 80.0, false}, true},
+        Case{{3, 7, 18.0, 36.0, 36.0, false}, false}}) {
+    const CurveClass truth = one.part.radius > 0.0 ? CurveClass::Circle : CurveClass::Line;
+    const int parts = test::stress_count(150);
+    int right = 0;
+    int wrong = 0;
+    double expected = 0.0;
+    for (int i = 0; i < parts; ++i) {
+      const Recognition answer = test::recognise(touched(one.part, rng), 0.0);
+      if (answer.status == RecognitionStatus::Recognized) {
+        ++(answer.shape.curve_class == truth ? right : wrong);
+        expected += 1.0 - answer.hypotheses.front().probability;
+      }
+    }
+    std::cout << one.part.strokes << " strokes of " << one.part.samples << ": " << right
+              << " right, " << wrong << " wrong, by what is told " << expected << '\n';
+    EXPECT_LE(wrong, test::most_of_poisson(expected));
+    if (one.tells_the_class && test::counts_tell()) {
+      EXPECT_GE(right, parts / 2);
+    }
+  }
+}
+
 // One stroke of an ellipse of 30 x 20 mm over 1.3 rad. A polynomial that so few samples allow
 // leaves form, which was taken for what noise leaves: a spline that went nearer to them was
 // certain.

@@ -15,6 +15,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/numerics/probability/log_add.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/smooth/smooth_model.h"
 #include "tests/support/scene_data.h"
@@ -460,6 +461,46 @@ TEST(FreeForm, IsTheMarginalLikelihoodOfItsPrior) {
 
 /// A probe at rest: sections follow one another through a cloud, from each end predicted for the
 /// next one's beginning. Covariances that rounding made indefinite left no evidence.
+/// Strokes of so few samples that no section shows their noise.
+TEST(FreeForm, OverAnUnseenNoiseIsTheIntegralOverIt) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class : {CurveClass::Line, CurveClass::Circle}) {
+    test::SceneOptions options;
+    options.patches = 6;
+    options.points_per_patch = 5;
+    options.sigma_over_size = 0.01;
+    options.least_fraction = options.most_fraction = 0.05;
+    const test::Scene scene = test::random_scene(curve_class, options, rng);
+    FitData data = test::fit_data(scene, scene.sigma_m);
+    const SmoothModel smooth = fit_smooth_model(&data, true);
+    ASSERT_EQ(smooth.dof(), 0);
+    Likelihood likelihood;
+    likelihood.sigma_known = false;
+    likelihood.samples = static_cast<double>(data.points.size());
+    likelihood.chi2_floor = 1e-8 * likelihood.samples;
+    const FreeForm paths = free_form_over_noise(smooth, likelihood, test::unbounded_work());
+    // By the trapezoidal rule, from the paths of every noise.
+    constexpr double kStep = 0.02;
+    double sum = kNoEvidence;
+    double top = kNoEvidence;
+    double at_noise = kNoEvidence;
+    for (double u = std::log(1e-4) - 3.0; u < std::log(100.0); u += kStep) {
+      const FreeForm there = free_form(smooth, std::exp(2.0 * u), test::unbounded_work());
+      const double value = there.log_occam - 0.5 * there.chi2 -
+                           0.5 * likelihood.chi2_floor * std::exp(-2.0 * u) -
+                           likelihood.samples * u;
+      sum = log_add(sum, value + std::log(kStep));
+      at_noise = u < std::log(paths.noise) ? value : at_noise;
+      top = std::max(top, value);
+    }
+    // As accurate as Laplace's formula for a chi-square law of some ten degrees of freedom.
+    ASSERT_TRUE(paths.log_over_noise);
+    EXPECT_NEAR(*paths.log_over_noise, std::log(2.0) + sum, 0.1) << name_of(curve_class);
+    // The likeliest of one size of features, which others may outdo a little elsewhere.
+    EXPECT_GE(at_noise, top - 1.0) << name_of(curve_class);
+  }
+}
+
 TEST(FreeForm, OfACloudHasEvidence) {
   std::mt19937_64 rng = test::test_rng();
   std::normal_distribution<double> scatter(0.0, 0.25);
