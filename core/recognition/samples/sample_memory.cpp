@@ -82,9 +82,7 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
         samples.size();
     return result;
   }
-  auto place = std::find_if(patches_.begin(), patches_.end(), [&](const StoredPatch& patch) {
-    return is_of_one_stroke(patch.context, context);
-  });
+  StoredPatch* patch = patches_.find(context);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const ContactSample& sample = samples[i];
     if (const SampleFault fault = fault_of(i, samples, details); fault != SampleFault::None) {
@@ -93,69 +91,58 @@ AddResult SampleMemory::add(const PatchContext& context, std::span<const Contact
                                                : result.rejected_detail);
       continue;
     }
-    if (place == patches_.end()) {
-      StoredPatch patch;
-      patch.context = context;
-      patches_.push_back(std::move(patch));
-      place = patches_.end() - 1;
+    if (patch == nullptr) {
+      patch = patches_.begin(context);
     }
-    std::vector<StoredSample>& stored = place->samples;
-    if (!stored.empty() && place->newest_m == sample.position_m && !options_.takes_repeated) {
+    std::vector<StoredSample>& stored = patch->samples;
+    const bool is_touch_or_was = stored.size() <= 1;
+    if (!stored.empty() && patch->newest_m == sample.position_m && !options_.takes_repeated) {
       ++result.repeated;
       continue;
     }
-    place->context = continued(place->context, context);
-    place->newest_m = sample.position_m;
+    patch->context = continued(patch->context, context);
+    patch->newest_m = sample.position_m;
     ++result.accepted;
     const bool detailed = !details.empty() && says_more(details[i]);
     result.detailed += detailed ? 1 : 0;
-    const bool fills_up = !stored.empty() && stored.back().contacts < place->contacts_per_sample;
+    const bool fills_up = !stored.empty() && stored.back().contacts < patch->contacts_per_sample;
     if (!fills_up && stored.size() >= options_.most_samples_per_patch &&
-        (options_.takes_repeated || !merge_dwells(&*place))) {
-      merge_pairs(&*place);
+        (options_.takes_repeated || !merge_dwells(patch))) {
+      merge_pairs(patch);
     }
     stored.push_back({sample.position_m, sample.sigma_m, 1.0});
-    if (detailed || !place->details.empty()) {
-      place->details.resize(stored.size());
-      if (detailed) place->details.back() = details[i];
+    if (detailed || !patch->details.empty()) {
+      patch->details.resize(stored.size());
+      if (detailed) patch->details.back() = details[i];
     }
     if (fills_up) {
-      merge_into(&*place, stored.size() - 2, stored.size() - 2);
+      merge_into(patch, stored.size() - 2, stored.size() - 2);
       stored.pop_back();
-      if (!place->details.empty()) place->details.pop_back();
+      if (!patch->details.empty()) patch->details.pop_back();
       continue;
     }
-    if (stored.size() <= 2) {
-      const bool lone = stored.size() == 1;
-      result.forgotten +=
-          make_room(lone, lone ? options_.most_lone_touches : options_.most_patches, &place);
+    if (is_touch_or_was) {
+      result.forgotten += make_room(&patch);
     }
   }
   return result;
 }
 
-std::size_t SampleMemory::make_room(bool lone, std::size_t most, Patch* growing) {
-  const auto is_such = [&](const StoredPatch& patch) {
-    return (patch.samples.size() == 1) == lone;
-  };
-  const auto count = std::count_if(patches_.begin(), patches_.end(), is_such);
-  if (static_cast<std::size_t>(count) <= most) {
+std::size_t SampleMemory::make_room(StoredPatch** growing) {
+  const bool lone = (*growing)->samples.size() == 1;
+  lone_touches_ = lone ? lone_touches_ + 1 : lone_touches_ - 1;
+  const bool fits = lone ? lone_touches_ <= options_.most_lone_touches
+                         : patches_.size() - lone_touches_ <= options_.most_patches;
+  if (fits) {
     return 0;
   }
-  auto oldest = std::find_if(patches_.begin(), patches_.end(), is_such);
-  if (oldest == *growing) {
-    oldest = std::find_if(oldest + 1, patches_.end(), is_such);
-  }
-  const std::size_t contacts = contacts_of(*oldest);
-  const auto grown = *growing - patches_.begin() - (oldest < *growing ? 1 : 0);
-  patches_.erase(oldest);
-  *growing = patches_.begin() + grown;
-  return contacts;
+  lone_touches_ -= lone ? 1 : 0;
+  return contacts_of(patches_.take_oldest(lone, growing));
 }
 
 std::size_t SampleMemory::sample_count() const {
   std::size_t count = 0;
-  for (const StoredPatch& patch : patches_) {
+  for (const StoredPatch& patch : patches_.patches()) {
     count += contacts_of(patch);
   }
   return count;

@@ -7,6 +7,7 @@
 
 #include "core/recognition/samples/contact_run.h"
 #include "core/recognition/samples/contact_sample.h"
+#include "core/recognition/samples/patch_queue.h"
 #include "core/recognition/samples/sample_detail.h"
 #include "core/recognition/samples/stored_patch.h"
 
@@ -66,27 +67,33 @@ class SampleMemory {
   /// Appends to the patch of that probe and number, or begins it. A patch has one tip radius and at
   /// most one side, stated with any of its samples: others begin a patch of their own. `details`:
   /// one per sample, or empty; another number of them, or an invalid tip radius, rejects all
-  /// samples. Amortised O(samples + patches).
+  /// samples. Amortised O(samples + log patches), and for each patch that is forgotten O(older ones
+  /// of the other kind).
   AddResult add(const PatchContext& context, std::span<const ContactSample> samples,
                 std::span<const SampleDetail> details = {});
 
-  void clear() { patches_.clear(); }
+  void clear() {
+    patches_ = {};
+    lone_touches_ = 0;
+  }
 
-  /// In the order in which they were begun.
-  const std::vector<StoredPatch>& patches() const { return patches_; }
+  /// In the order in which they were begun; a view that holds until samples are added.
+  std::span<const StoredPatch> patches() const { return patches_.patches(); }
+
+  /// The same as a vector: O(patches) after some were forgotten.
+  const std::vector<StoredPatch>& patches_in_a_row() { return patches_.in_a_row(); }
 
   /// Contacts accepted since clear(), without those of forgotten patches.
   std::size_t sample_count() const;
 
  private:
-  using Patch = std::vector<StoredPatch>::iterator;
-
-  /// If more than `most` patches (at least 1) are of the kind, single touches or longer ones,
-  /// forgets the oldest of them, but not `growing`. Returns how many contacts it stood for.
-  std::size_t make_room(bool lone, std::size_t most, Patch* growing);
+  /// Makes the patch a single touch, or no longer one, as its samples are now. If that is one more
+  /// of the kind than may be, forgets the oldest other one. Returns how many contacts that was.
+  std::size_t make_room(StoredPatch** growing);
 
   MemoryOptions options_;
-  std::vector<StoredPatch> patches_;
+  PatchQueue patches_;
+  std::size_t lone_touches_ = 0;  ///< of the patches
 };
 
 /// The stored samples of a patch as contacts. The mean of w contacts has noise smaller by sqrt(w).

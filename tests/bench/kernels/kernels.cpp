@@ -5,6 +5,8 @@
 // Only what runs inside `palpate_kernel_call` is counted; preparation is outside of it.
 #include <charconv>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <iostream>
@@ -33,6 +35,7 @@
 #include "core/local/tip_radius.h"
 #include "core/recognition/fit/orthogonal/implicit_fit.h"
 #include "core/recognition/reported_tree_path.h"
+#include "core/recognition/samples/sample_memory.h"
 #include "tests/support/answered_scene.h"
 #include "tests/support/canonical_points.h"
 #include "tests/support/fit_samples.h"
@@ -370,6 +373,30 @@ void add_tree(std::vector<Kernel>* kernels) {
   }
 }
 
+/// One more touch for a memory that holds `held`, with room for more or with none.
+void add_memory(std::vector<Kernel>* kernels) {
+  constexpr int kTouches = 100;
+  constexpr std::size_t kRoom = 2000;
+  const auto touch = [](SampleMemory* memory, std::size_t i) {
+    const ContactSample sample{{1e-3 * static_cast<double>(i), 0.0}, 1e-5, 0};
+    return memory->add({.patch = static_cast<std::uint32_t>(i)}, {&sample, 1}).accepted;
+  };
+  for (const std::size_t held : {std::size_t{1000}, std::size_t{10000}}) {
+    for (const bool is_full : {false, true}) {
+      const auto prepare = [=]() -> Prepared {
+        MemoryOptions options;
+        options.most_lone_touches = is_full ? held : held + kRoom;
+        const auto memory = std::make_shared<SampleMemory>(options);
+        for (std::size_t i = 0; i < held; ++i) touch(memory.get(), i);
+        const auto next = std::make_shared<std::size_t>(held);
+        return {[=](std::size_t) { keep(touch(memory.get(), (*next)++)); }, {}};
+      };
+      kernels->push_back({"memory/touch-after-" + std::to_string(held) + (is_full ? "/full" : ""),
+                          kTouches, prepare});
+    }
+  }
+}
+
 std::vector<Kernel> all_kernels() {
   // First the cost of calling a kernel, which compare.sh subtracts from the others.
   std::vector<Kernel> kernels = {over(
@@ -377,6 +404,7 @@ std::vector<Kernel> all_kernels() {
   add_local(&kernels);
   add_invariants(&kernels);
   add_curves(&kernels);
+  add_memory(&kernels);
   add_recognition(&kernels);
   add_tree(&kernels);
   return kernels;
