@@ -40,6 +40,15 @@ struct ClassEvidence {
   int widest = -1;       ///< the sliced coordinate; -1 with one node
 };
 
+/// log: a mode of less than a fiftieth of the best is not told.
+inline constexpr double kToldMass = 4.0;
+
+/// Puts the evidence at a mode, by Laplace's formula: the only one, until others are told of.
+void set_mode(TouchedCurve mode, ClassEvidence* evidence);
+
+/// `log_all`: its log_all_modes from now on.
+void set_log_all_modes(double log_all, ClassEvidence* evidence);
+
 /// False if the prior seems to leave more than all of the likelihood: then the fit was not at its
 /// optimum.
 bool is_of_optimum(const ClassEvidence& evidence);
@@ -51,31 +60,6 @@ bool is_of_optimum(const ClassEvidence& evidence);
 /// O(points).
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work);
-
-/// The evidence at the mode that is reached from the prior, if it is larger than `evidence` and
-/// than `least` (log of what the prior leaves of the likelihood). A fit may lie far out in the
-/// prior's tails, in a valley that is too long and bent to be walked along, while another place of
-/// the valley fits as well and is expected by the prior. Shapes of the prior are laid along `path`,
-/// a curve near the points: the fit's own, or another class's.
-ClassEvidence with_prior_mode(ClassEvidence evidence, const ClassEvidence& path,
-                              const FitData& data, double least, WorkBudget& work);
-
-/// The evidence of a class at the best mode that the prior leads to along `path`, another class's.
-/// `fitted_chi2`: the chi-square that `log_occam` counts from; `least`: as with_prior_mode's.
-/// nullopt if no mode has as much.
-std::optional<ClassEvidence> from_prior(CurveClass curve_class, double fitted_chi2,
-                                        const ClassEvidence& path, const FitData& data,
-                                        double least, WorkBudget& work);
-
-/// The spline's evidence at the mode that it has at c = 0, where the semi-cubical parabola has its
-/// own, if that holds more. Slices and searches may miss it: the valley between is long.
-ClassEvidence with_mode_at_cusp(ClassEvidence spline, const ClassEvidence& semi_cubical,
-                                const FitData& data, WorkBudget& work);
-
-/// The same at the mode that it has beside the parabola: an arc with next to no third derivative.
-/// The best fit, and what the prior leads to from there, may lie far along a flat valley.
-ClassEvidence with_mode_at_parabola(ClassEvidence spline, const ClassEvidence& parabola,
-                                    const FitData& data, WorkBudget& work);
 
 /// The evidence at the mode that `start`, which need not be an optimum, leads to. `fitted_chi2`:
 /// the chi-square that `log_occam` counts from. nullopt as for evidence_of().

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/numerics/matrices/small_cholesky.h"
+#include "core/recognition/modes/other_modes.h"
 #include "core/recognition/posterior/prior_modes.h"
 #include "core/recognition/prior/touched_prior.h"
 

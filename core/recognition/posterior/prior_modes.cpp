@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/numerics/probability/negligible.h"
+#include "core/recognition/modes/other_modes.h"
 
 namespace palpate {
 namespace {
