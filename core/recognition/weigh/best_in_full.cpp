@@ -31,16 +31,6 @@ void give_normals(FitData* data) {
   }
 }
 
-/// Weighs points with covariances by the noise across a curve at their feet.
-void weigh_across_curve(const CanonicalFit& placed, FitData* data) {
-  const double rounding = rounding_level(*data);
-  for (std::size_t i = 0; i < data->details.size(); ++i) {
-    PointDetail detail = data->details[i];
-    weigh_across(data->frame.rotate_back(placed.points[i].normal), rounding, &detail,
-                 &data->points[i]);
-  }
-}
-
 struct PlacedInFull {
   ClassFit fit;
   CanonicalFit canonical;
@@ -48,14 +38,15 @@ struct PlacedInFull {
 
 /// To the optimum with weights of the curve found, as the fit of a given class has them. Each walk
 /// leaves of the weights' error about the noise over the radius of curvature.
-std::optional<PlacedInFull> placed_in_full(PlacedInFull start, FitData* data, WorkBudget& work) {
+std::optional<PlacedInFull> placed_in_full(PlacedInFull start, const FitData& data,
+                                           WorkBudget& work) {
   constexpr int kMostWalks = 10;  // with a tenth of an error left by each, to rounding
   constexpr double kSame = 1e-6;  // of chi-square: a thousandth of a deviation
   PlacedInFull placed = std::move(start);
   for (int walk = 0; walk < kMostWalks; ++walk) {
-    weigh_across_curve(placed.canonical, data);
-    const auto fit = polish(placed.fit, *data, work);
-    auto canonical = fit ? to_canonical(*fit, *data) : std::nullopt;
+    const FitData weighed = weighed_across(placed.canonical, data, data);
+    const auto fit = polish(placed.fit, weighed, work);
+    auto canonical = fit ? to_canonical(*fit, weighed) : std::nullopt;
     if (!canonical) {
       return std::nullopt;
     }
@@ -134,6 +125,17 @@ FitData reduced_with_normals(const Weighing& w, const FitData& data) {
 
 }  // namespace
 
+FitData weighed_across(const CanonicalFit& placed, const FitData& open, FitData data) {
+  const double rounding = rounding_level(data);
+  for (std::size_t i = 0; i < data.details.size(); ++i) {
+    if (open.details[i].covariance.x() > 0.0) {
+      weigh_across(data.frame.rotate_back(placed.points[i].normal), rounding, &data.details[i],
+                   &data.points[i]);
+    }
+  }
+  return data;
+}
+
 Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   if (!w.canonical[w.best] || !w.fits[w.best]->on_all) {
     return w;
@@ -148,14 +150,14 @@ Weighing best_in_full(Weighing w, const FitData& data, WorkBudget& work) {
   if (!w.seen.correlated && !(w.seen.correlation_length > 0.0)) {
     give_normals(&full);
   }
-  auto placed = placed_in_full({*w.fits[w.best], *w.canonical[w.best]}, &full, work);
+  auto placed = placed_in_full({*w.fits[w.best], *w.canonical[w.best]}, full, work);
   const auto wrong = placed && full.normals_along_strokes ? wrong_normals(placed->canonical, full)
                                                           : std::vector<std::size_t>{};
   for (const std::size_t i : wrong) {
     full.points[i].inverse_normal_sigma = 0.0;
   }
   if (!wrong.empty()) {
-    placed = placed_in_full(*std::move(placed), &full, work);
+    placed = placed_in_full(*std::move(placed), full, work);
   }
   if (!placed) {  // no curve of the class has these places and normals
     w.counted_chi2 = std::numeric_limits<double>::infinity();

@@ -6,6 +6,10 @@
 
 namespace palpate {
 
+/// The data with covariances that are left in `open`, of the same points, weighed by what of them
+/// lies across a curve at their feet: they are used up then.
+FitData weighed_across(const CanonicalFit& placed, const FitData& open, FitData data);
+
 /// The best class at the optimum of places, weighed by their noise across the curve itself, and of
 /// normals, with the covariance of both. `w.residuals` counts the normals; odds of the classes are
 /// those of the places. Where neighbours err together, nothing tells what a normal is worth beside
