@@ -28,14 +28,11 @@ struct Left {
   Indices numbers;  ///< of the points among all
 };
 
-Left without(const Left& from, std::size_t k) {
-  Left left = from;
+Left without(Left left, std::size_t k) {
+  std::vector<bool> is_out(left.points.points.size(), false);
+  is_out[k] = true;
+  left.points = without_points(left.points, is_out);
   const auto at = static_cast<std::ptrdiff_t>(k);
-  left.points.points.erase(left.points.points.begin() + at);
-  left.points.patches.clear();
-  for (std::size_t i = 0; i < left.points.points.size(); ++i) {
-    left.points.patches.push_back({i, i + 1});
-  }
   left.numbers.erase(left.numbers.begin() + at);
   if (left.fit.polynomial) {
     left.fit.polynomial->t.erase(left.fit.polynomial->t.begin() + at);
