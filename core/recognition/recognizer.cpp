@@ -165,7 +165,7 @@ class Recognizer::Impl {
 
   const std::vector<StoredPatch>& cleaned(WorkBudget& work) {
     const WorkBudget::Reserve for_classes(work, kShareOfClasses);
-    clean_.update(memory_.patches_in_a_row(),
+    clean_.update(memory_.patches(),
                   {options_.sigma_m, options_.form_deviation_m, options_.false_outlier_probability},
                   work);
     return clean_.clean();

@@ -16,11 +16,6 @@ void PatchQueue::close_gap() {
   gap_ = 0;
 }
 
-const std::vector<StoredPatch>& PatchQueue::in_a_row() {
-  close_gap();
-  return patches_;
-}
-
 StoredPatch* PatchQueue::find(const PatchContext& context) {
   const auto [from, to] = by_stroke_.equal_range(stroke_of(context));
   for (auto entry = from; entry != to; ++entry) {

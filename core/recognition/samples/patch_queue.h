@@ -13,14 +13,11 @@
 
 namespace palpate {
 
-/// Pointers to its patches hold until another one is begun or forgotten, or in_a_row() is called.
+/// Pointers to its patches hold until another one is begun or forgotten.
 class PatchQueue {
  public:
   std::size_t size() const { return patches_.size() - gap_; }
   std::span<const StoredPatch> patches() const { return std::span(patches_).subspan(gap_); }
-
-  /// The same as a vector: O(patches) after some were forgotten.
-  const std::vector<StoredPatch>& in_a_row();
 
   /// The oldest patch that such samples continue; nullptr if none. O(log patches).
   StoredPatch* find(const PatchContext& context);

@@ -80,9 +80,6 @@ class SampleMemory {
   /// In the order in which they were begun; a view that holds until samples are added.
   std::span<const StoredPatch> patches() const { return patches_.patches(); }
 
-  /// The same as a vector: O(patches) after some were forgotten.
-  const std::vector<StoredPatch>& patches_in_a_row() { return patches_.in_a_row(); }
-
   /// Contacts accepted since clear(), without those of forgotten patches.
   std::size_t sample_count() const;
 

@@ -218,10 +218,10 @@ TEST(CleanPatches, KeepNothingOfATipThatIsAnother) {
   }
   stroke.newest_m = stroke.samples.back().position_m;
   CleanPatches clean;
-  clean.update({stroke}, {.false_alarm = 0.01}, test::unbounded_work());
+  clean.update({&stroke, 1}, {.false_alarm = 0.01}, test::unbounded_work());
   stroke.context.material_side = MaterialSide::Left;
   stroke.context.tip_radius_m = 1e-3;
-  clean.update({stroke}, {.false_alarm = 0.01}, test::unbounded_work());
+  clean.update({&stroke, 1}, {.false_alarm = 0.01}, test::unbounded_work());
   EXPECT_EQ(clean.moved().front().context, stroke.context);
   EXPECT_EQ(clean.clean().front().context, stroke.context);
 }

@@ -140,7 +140,7 @@ void clean_passes(const StoredPatch& patch, const CleanOptions& options,
 
 }  // namespace
 
-void CleanPatches::update(const std::vector<StoredPatch>& patches, const CleanOptions& options,
+void CleanPatches::update(std::span<const StoredPatch> patches, const CleanOptions& options,
                           WorkBudget& work) {
   const double default_sigma_m = options.default_sigma_m;
   seen_.resize(patches.size());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/numerics/work_budget.h"
@@ -34,8 +35,7 @@ struct CleanOptions {
 class CleanPatches {
  public:
   /// Processes the patches of a memory.
-  void update(const std::vector<StoredPatch>& patches, const CleanOptions& options,
-              WorkBudget& work);
+  void update(std::span<const StoredPatch> patches, const CleanOptions& options, WorkBudget& work);
 
   /// The patches with each dwell replaced by its mean (dwell_means.h), and so single touches of one
   /// place (repeated_touches.h), cut where they turn back over themselves (passes.h). Spikes are
