@@ -279,6 +279,9 @@ Peak peak_from(const LogAt& log_at, double at, double step, double width) {
 
 FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likelihood,
                               WorkBudget& work) {
+  if (!work.allows()) {
+    return free_form(smooth, likelihood.inflation(), work);
+  }
   const double left = likelihood.left(smooth.chi2);
   const double weight = 1.0 / std::sqrt(likelihood.inflation());
   const auto log_of_size = [&](double size) {
@@ -309,7 +312,8 @@ FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likel
   // The evidence has one maximum: outwards from the middle until it has fallen off.
   const auto from = [&](std::size_t s, int step, double at) {
     double before = best.log_mass;
-    for (auto i = static_cast<int>(s); i >= 0 && i < static_cast<int>(kSizes.size()); i += step) {
+    for (auto i = static_cast<int>(s);
+         i >= 0 && i < static_cast<int>(kSizes.size()) && work.allows(); i += step) {
       constexpr double kNear = 4.0;  // from one size to the next, in widths
       const Peak peak =
           peak_from(log_of_size(kSizes[static_cast<std::size_t>(i)]), at, kNear * width, width);

@@ -6,6 +6,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/numerics/probability/negligible.h"
+#include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/cusp_of_spline.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/class_limits.h"
@@ -74,15 +76,32 @@ const ClassFit& settle(CurveClass i, RivalOf rival, const FitData& reduced, Cont
   return *contenders->coarse[i];
 }
 
-/// The semi-cubical parabola next to the best spline, where its own fit leaves more. Asked where
-/// the reduced points do not tell what all points do: no polynomial of a section leads round a cusp
-/// that was not seen as one.
+/// By how much more chi-square a semi-cubical parabola leaves than a spline that is near one: by
+/// its c, which that has at 0.
+double chi2_of_c(const ClassFit& spline, const FitData& data) {
+  constexpr Eigen::Index kC = 2;  // of [a, b, c, ...]
+  const auto canonical = to_canonical(spline, data);
+  if (!canonical) {
+    return 0.0;
+  }
+  const double c = canonical->shape.values[kC];
+  return c * c / canonical->covariance(kC, kC);
+}
+
+/// The semi-cubical parabola next to the best spline, where its own fit leaves more: no polynomial
+/// of a section leads round a cusp that was not seen as one, and of a stroke that ends behind it
+/// the feet of the last samples may be on the arm that it came from.
 void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
   constexpr auto kSemiCubical = CurveClass::SemiCubicalParabola;
   const auto& spline = contenders->fits[CurveClass::CubicSpline];
   auto& fit = contenders->fits[kSemiCubical];
   auto& coarse = contenders->coarse[kSemiCubical];
-  if (!fit || !coarse || fit->polished || !std::isfinite(spline->chi2) || !context.work.allows()) {
+  if (!fit || !coarse || !std::isfinite(spline->chi2) || !context.work.allows()) {
+    return;
+  }
+  // Less than its own fit leaves, and not so much that it is out.
+  const double most = std::min(fit->chi2 - spline->chi2 - kLeastError, 2.0 * kNegligibleLogOdds);
+  if (most <= 0.0 || chi2_of_c(*spline, context.arcs.data) > most) {
     return;
   }
   auto found = cusp_of_spline(*spline, context.arcs.data, context.work);
@@ -91,11 +110,8 @@ void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
   }
   found->own_points = spline->own_points;
   const FitData& points = points_of(*found, context.reduced);
-  ClassFit there = settled(placed_on_reduced(*found, points, context.work), points, RivalOf::Other,
-                           context.work);
-  if (there.chi2 < coarse->chi2) {
-    coarse = std::move(there);
-  }
+  coarse = settled(placed_on_reduced(*found, points, context.work), points, RivalOf::Other,
+                   context.work);
   fit = std::move(found);
 }
 
@@ -231,7 +247,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = contenders.coarse[b]->chi2 + smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
-        if (b == CurveClass::CubicSpline && !trusted) {
+        if (b == CurveClass::CubicSpline) {
           seek_cusp(context, &contenders);
         }
         follow_all_points(b, context, &contenders);
@@ -275,6 +291,9 @@ Contenders decided(Contenders contenders, const EvidenceContext& context, double
     }
     fit = polished(settle(i, RivalOf::Best, reduced, &contenders, context.work), arcs.smooth,
                    arcs.data, context.work);
+    if (i == CurveClass::CubicSpline) {
+      seek_cusp(context, &contenders);
+    }
     follow_all_points(i, context, &contenders);
     take_limits(&contenders.fits);
   }
