@@ -170,7 +170,8 @@ TouchReference reference_of(const LoneTouches& touches) {
 
   const Likelihood likelihood = likelihood_of(arcs, 0.0);
   const auto truth = static_cast<std::size_t>(scene.curve_class);
-  const Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, test::unbounded_work());
+  const Evidences of_paths =
+      evidences_of_paths(arcs.smooth, likelihood, nullptr, test::unbounded_work());
   TouchReference reference;
   reference.chi2.fill(kInfinity);
   reference.compares_all = true;

@@ -15,13 +15,14 @@ constexpr int kDegreesThatTellNoise = 50;
 }  // namespace
 
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
-                             WorkBudget& work) {
+                             const FreeForm* over_noise, WorkBudget& work) {
   Evidences evidences;
   evidences.inflation = likelihood.inflation();
   const bool is_told = likelihood.sigma_known || smooth.dof() >= kDegreesThatTellNoise;
   evidences.free_form = is_told || likelihood.coherent_variance > 0.0
                             ? free_form(smooth, evidences.inflation, work)
-                            : free_form_over_noise(smooth, likelihood, work);
+                        : over_noise != nullptr ? *over_noise
+                                                : free_form_over_noise(smooth, likelihood, work);
   return evidences;
 }
 

@@ -64,9 +64,10 @@ struct Evidences {
   bool shared_or_other = false;
 };
 
-/// The evidence of free-form paths alone, of no class yet.
+/// The evidence of free-form paths alone, of no class yet. `over_noise`: theirs where that has been
+/// integrated over the noise before; may be nullptr.
 Evidences evidences_of_paths(const SmoothModel& smooth, const Likelihood& likelihood,
-                             WorkBudget& work);
+                             const FreeForm* over_noise, WorkBudget& work);
 
 /// log of the evidence of free-form paths.
 double log_evidence_of_paths(const Likelihood& likelihood, const Evidences& evidences,

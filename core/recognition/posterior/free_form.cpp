@@ -314,7 +314,7 @@ FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likel
     double before = best.log_mass;
     for (auto i = static_cast<int>(s);
          i >= 0 && i < static_cast<int>(kSizes.size()) && work.allows(); i += step) {
-      constexpr double kNear = 4.0;  // from one size to the next, in widths
+      constexpr double kNear = 2.0;  // from one size to the next, in widths
       const Peak peak =
           peak_from(log_of_size(kSizes[static_cast<std::size_t>(i)]), at, kNear * width, width);
       if (!std::isfinite(peak.log_top)) {
@@ -336,6 +336,14 @@ FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likel
   paths.noise = std::exp(best.at);
   // Twice: Likelihood::log_evidence leaves out the half of its integral.
   paths.log_over_noise = std::log(2.0) + sum - std::log(static_cast<double>(kSizes.size()));
+  return paths;
+}
+
+FreeForm over_times_the_noise(FreeForm paths, double times, double samples) {
+  if (paths.log_over_noise) {
+    *paths.log_over_noise += samples * std::log(times);
+    paths.noise /= times;
+  }
   return paths;
 }
 

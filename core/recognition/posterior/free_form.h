@@ -27,9 +27,12 @@ FreeForm free_form(const SmoothModel& smooth, double inflation, WorkBudget& work
 
 /// The same where nobody states the noise and the sections hardly show it: what a path through all
 /// points leaves is not the noise, and how much is only the prior of paths tells. By quadrature
-/// over the noise, from the finest to one as large as the part. O(reduced points), some 150 times
+/// over the noise, from the finest to one as large as the part. O(reduced points), a hundred times
 /// as much as free_form.
 FreeForm free_form_over_noise(const SmoothModel& smooth, const Likelihood& likelihood,
                               WorkBudget& work);
+
+/// That of the same points with so many times the noise. `samples`: Likelihood::samples.
+FreeForm over_times_the_noise(FreeForm paths, double times, double samples);
 
 }  // namespace palpate

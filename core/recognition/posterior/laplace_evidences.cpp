@@ -57,7 +57,7 @@ Evidences started_from(const Evidences& before, const SmoothModel& smooth,
     evidences.inflation = before.inflation;
     evidences.free_form = before.free_form;
   } else {
-    evidences = evidences_of_paths(smooth, likelihood, work);
+    evidences = evidences_of_paths(smooth, likelihood, nullptr, work);
   }
   evidences.limits_only = before.limits_only;
   evidences.log_shared = before.log_shared;

@@ -190,9 +190,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
 
 /// The arcs by less noise, where a class that leaves no more than noise leaves less than the smooth
 /// model. No class can where sections follow the path: these do not, and neither they nor the
-/// reduced points tell anything of the other classes. Where the sections show no noise, the arcs in
-/// units of what the best class leaves: what coordinates are determined is told by noise of about
-/// that size, and not by none. nullopt where there is nothing to better.
+/// reduced points tell anything of the other classes. nullopt where none does.
 std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   if (!best || !arcs->may_not_follow) {
     return std::nullopt;
@@ -206,7 +204,7 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   const double dof =
       static_cast<double>(residuals) - degrees_of_freedom(best->canonical.shape.curve_class);
   const double smooth_dof = arcs->smooth.dof();
-  if (dof < kFewestDegreesOfNoise) {
+  if (dof < kFewestDegreesOfNoise || smooth_dof < kFewestDegreesOfNoise) {
     return std::nullopt;
   }
   // Of its standard deviations; a false alarm, one in a thousand, costs a weighing by less noise.
@@ -214,15 +212,26 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
   // Log variances of normal samples have the variance 2 / dof.
   const double least = kExact / arcs->sigma;
   const double variance = std::max(best->chi2 / dof, least * least);
-  if (smooth_dof < kFewestDegreesOfNoise) {
-    arcs->may_not_follow = false;
-    return variance > 1.0 ? std::optional(arcs_in_units_of(std::move(*arcs), std::sqrt(variance)))
-                          : std::nullopt;
-  }
   const bool better = std::log(arcs->smooth.chi2 / smooth_dof / variance) >
                       kSeen * std::sqrt(2.0 / dof + 2.0 / smooth_dof);
   return better ? std::optional(arcs_of_noise(std::move(*arcs), std::sqrt(variance)))
                 : std::nullopt;
+}
+
+/// Where the sections show no noise: how many times that of the arcs the best class leaves, if that
+/// is more. What coordinates are determined is told by noise of about that size, and not by less.
+std::optional<double> times_the_noise(const Arcs& arcs, const std::optional<Placed>& best) {
+  if (!best || !arcs.may_not_follow || !is_noise_unseen(arcs)) {
+    return std::nullopt;
+  }
+  const double dof = static_cast<double>(residual_count(arcs.data)) -
+                     degrees_of_freedom(best->canonical.shape.curve_class);
+  // By less, what the prior leaves of a coordinate is off by a factor of 2 at most.
+  constexpr double kAsGood = 2.0;
+  if (dof < kFewestDegreesOfNoise || !(best->chi2 > kAsGood * kAsGood * dof)) {
+    return std::nullopt;
+  }
+  return std::sqrt(best->chi2 / dof);
 }
 
 /// Whether rounding explains all that the best class leaves.
@@ -236,13 +245,29 @@ bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
   return best->chi2 <= rounding * rounding * left_over;
 }
 
-Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget& work,
+/// Of arcs whose noise is unseen: with free paths integrated over it.
+struct ArcsToWeigh {
+  Arcs arcs;
+  std::optional<FreeForm> over_noise = {};
+};
+
+/// The same in units of so many times the noise.
+ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
+  const double samples = likelihood_of(unseen.arcs, 0.0).samples;
+  unseen.arcs = arcs_in_units_of(std::move(unseen.arcs), times);
+  unseen.over_noise = over_times_the_noise(*std::move(unseen.over_noise), times, samples);
+  return unseen;
+}
+
+Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, WorkBudget& work,
                     const WeighOptions& options, std::span<const SidedStart> starts) {
+  Arcs& arcs = to_weigh.arcs;
   const Likelihood stated = likelihood_of(arcs, options.form_deviation_m);
   work.spend(WorkKind::SectionRow, arcs.smooth.fitted);
   const unsigned sought = with_limits(options.classes);
   const auto paths_under = [&](const Likelihood& likelihood) {
-    Evidences of_paths = evidences_of_paths(arcs.smooth, likelihood, work);
+    Evidences of_paths = evidences_of_paths(
+        arcs.smooth, likelihood, to_weigh.over_noise ? &*to_weigh.over_noise : nullptr, work);
     of_paths.free_form.log_occam += options.log_odds_against_gross;
     of_paths.limits_only = sought & ~options.classes;
     return of_paths;
@@ -267,12 +292,17 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   if (work.allows()) {
+    if (const auto times = times_the_noise(arcs, best_placed); times && to_weigh.over_noise) {
+      to_weigh = in_units_of(std::move(to_weigh), *times);
+      to_weigh.arcs.may_not_follow = false;
+      return weigh_arcs(std::move(to_weigh), patches, work, options, starts);
+    }
     if (auto nearer = bettered(&arcs, best_placed)) {
-      return weigh_arcs(*std::move(nearer), patches, work, options, starts);
+      return weigh_arcs({*std::move(nearer)}, patches, work, options, starts);
     }
   }
   if (are_rounded(arcs, best_placed) && work.allows()) {
-    return weigh_arcs(arcs_of_rounding(std::move(arcs)), patches, work, options, starts);
+    return weigh_arcs({arcs_of_rounding(std::move(arcs))}, patches, work, options, starts);
   }
   ResidualExcess seen =
       best_placed ? residual_excess(arcs, stated, best_placed->chi2, best_placed->canonical,
@@ -308,15 +338,18 @@ Weighing weigh_arcs(Arcs arcs, std::span<const StoredPatch> patches, WorkBudget&
 
 /// Where the noise is unseen: the arcs in units of what free paths along the strokes leave. By any
 /// less no class would be in reach. Single touches leave nothing.
-Arcs in_units_of_paths(Arcs arcs, const WeighOptions& options, WorkBudget& work) {
-  const bool has_strokes = std::any_of(arcs.data.patches.begin(), arcs.data.patches.end(),
-                                       [](const PatchSpan& patch) { return patch.size() > 1; });
-  if (!is_noise_unseen(arcs) || !has_strokes) {
-    return arcs;
+ArcsToWeigh in_units_of_paths(Arcs arcs, const WeighOptions& options, WorkBudget& work) {
+  if (!is_noise_unseen(arcs)) {
+    return {std::move(arcs)};
   }
   const Likelihood likelihood = likelihood_of(arcs, options.form_deviation_m);
-  const double noise = free_form_over_noise(arcs.smooth, likelihood, work).noise;
-  return arcs_in_units_of(std::move(arcs), noise);
+  const FreeForm paths = free_form_over_noise(arcs.smooth, likelihood, work);
+  if (!paths.log_over_noise) {  // no work was left for it
+    return {std::move(arcs)};
+  }
+  const bool has_strokes = std::any_of(arcs.data.patches.begin(), arcs.data.patches.end(),
+                                       [](const PatchSpan& patch) { return patch.size() > 1; });
+  return in_units_of({std::move(arcs), paths}, has_strokes ? paths.noise : 1.0);
 }
 
 }  // namespace
@@ -324,8 +357,8 @@ Arcs in_units_of_paths(Arcs arcs, const WeighOptions& options, WorkBudget& work)
 Weighing weigh(FitData data, std::span<const StoredPatch> patches, WorkBudget& work,
                const WeighOptions& options, std::span<const SidedStart> starts) {
   Arcs arcs = smooth_arcs(std::move(data), {patches, options.kept_sections});
-  arcs = in_units_of_paths(std::move(arcs), options, work);
-  return weigh_arcs(std::move(arcs), patches, work, options, starts);
+  return weigh_arcs(in_units_of_paths(std::move(arcs), options, work), patches, work, options,
+                    starts);
 }
 
 }  // namespace palpate
