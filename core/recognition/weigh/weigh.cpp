@@ -255,7 +255,7 @@ struct ArcsToWeigh {
 ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
   const double samples = likelihood_of(unseen.arcs, 0.0).samples;
   unseen.arcs = arcs_in_units_of(std::move(unseen.arcs), times);
-  unseen.over_noise = over_times_the_noise(*std::move(unseen.over_noise), times, samples);
+  unseen.over_noise = over_times_the_noise(*unseen.over_noise, times, samples);
   return unseen;
 }
 
