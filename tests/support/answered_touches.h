@@ -13,8 +13,9 @@
 namespace palpate::test {
 
 /// Each as a patch of its own. `sigma_m`: stated by every touch; 0 = not known.
-inline Recognition answer_to_touches(std::span<const Vec2> touches_m, double sigma_m) {
-  Recognizer recognizer;
+inline Recognition answer_to_touches(std::span<const Vec2> touches_m, double sigma_m,
+                                     const RecognizerOptions& options = {}) {
+  Recognizer recognizer(options);
   PatchContext context;
   for (const Vec2& touch_m : touches_m) {
     const ContactSample sample{touch_m, sigma_m, 0};

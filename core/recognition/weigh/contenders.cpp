@@ -91,12 +91,13 @@ double chi2_of_c(const ClassFit& spline, const FitData& data) {
 /// The semi-cubical parabola next to the best spline, where its own fit leaves more: no polynomial
 /// of a section leads round a cusp that was not seen as one, and of a stroke that ends behind it
 /// the feet of the last samples may be on the arm that it came from.
-void seek_cusp(const EvidenceContext& context, Contenders* contenders) {
+void seek_cusp(CurveClass i, const EvidenceContext& context, Contenders* contenders) {
   constexpr auto kSemiCubical = CurveClass::SemiCubicalParabola;
   const auto& spline = contenders->fits[CurveClass::CubicSpline];
   auto& fit = contenders->fits[kSemiCubical];
   auto& coarse = contenders->coarse[kSemiCubical];
-  if (!fit || !coarse || !std::isfinite(spline->chi2) || !context.work.allows()) {
+  if (i != CurveClass::CubicSpline || !fit || !coarse || !std::isfinite(spline->chi2) ||
+      !context.work.allows()) {
     return;
   }
   // Less than its own fit leaves, and not so much that it is out.
@@ -247,9 +248,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
         error = std::max(error, 2.0 * (told - best->chi2));
         const double settled_chi2 = contenders.coarse[b]->chi2 + smooth.chi2;
         trusted = trusted && std::abs(settled_chi2 - best->chi2) <= misfit_ratio * kLeastError;
-        if (b == CurveClass::CubicSpline) {
-          seek_cusp(context, &contenders);
-        }
+        seek_cusp(b, context, &contenders);
         follow_all_points(b, context, &contenders);
       }
       changed = true;
@@ -291,9 +290,7 @@ Contenders decided(Contenders contenders, const EvidenceContext& context, double
     }
     fit = polished(settle(i, RivalOf::Best, reduced, &contenders, context.work), arcs.smooth,
                    arcs.data, context.work);
-    if (i == CurveClass::CubicSpline) {
-      seek_cusp(context, &contenders);
-    }
+    seek_cusp(i, context, &contenders);
     follow_all_points(i, context, &contenders);
     take_limits(&contenders.fits);
   }

@@ -218,10 +218,26 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
                 : std::nullopt;
 }
 
+/// Of arcs whose noise is unseen: with free paths integrated over it.
+struct ArcsToWeigh {
+  Arcs arcs;
+  std::optional<FreeForm> over_noise = {};
+};
+
+/// The same in units of so many times the noise.
+ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
+  const double samples = likelihood_of(unseen.arcs, 0.0).samples;
+  unseen.arcs = arcs_in_units_of(std::move(unseen.arcs), times);
+  unseen.over_noise = over_times_the_noise(*unseen.over_noise, times, samples);
+  return unseen;
+}
+
 /// Where the sections show no noise: how many times that of the arcs the best class leaves, if that
 /// is more. What coordinates are determined is told by noise of about that size, and not by less.
-std::optional<double> times_the_noise(const Arcs& arcs, const std::optional<Placed>& best) {
-  if (!best || !arcs.may_not_follow || !is_noise_unseen(arcs)) {
+std::optional<double> times_the_noise(const ArcsToWeigh& to_weigh,
+                                      const std::optional<Placed>& best) {
+  const Arcs& arcs = to_weigh.arcs;
+  if (!best || !arcs.may_not_follow || !to_weigh.over_noise) {
     return std::nullopt;
   }
   const double dof = static_cast<double>(residual_count(arcs.data)) -
@@ -243,20 +259,6 @@ bool are_rounded(const Arcs& arcs, const std::optional<Placed>& best) {
                          degrees_of_freedom(best->canonical.shape.curve_class);
   const double rounding = arcs.data.reading_noise / arcs.sigma;
   return best->chi2 <= rounding * rounding * left_over;
-}
-
-/// Of arcs whose noise is unseen: with free paths integrated over it.
-struct ArcsToWeigh {
-  Arcs arcs;
-  std::optional<FreeForm> over_noise = {};
-};
-
-/// The same in units of so many times the noise.
-ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
-  const double samples = likelihood_of(unseen.arcs, 0.0).samples;
-  unseen.arcs = arcs_in_units_of(std::move(unseen.arcs), times);
-  unseen.over_noise = over_times_the_noise(*unseen.over_noise, times, samples);
-  return unseen;
 }
 
 Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, WorkBudget& work,
@@ -292,7 +294,7 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   if (work.allows()) {
-    if (const auto times = times_the_noise(arcs, best_placed); times && to_weigh.over_noise) {
+    if (const auto times = times_the_noise(to_weigh, best_placed)) {
       to_weigh = in_units_of(std::move(to_weigh), *times);
       to_weigh.arcs.may_not_follow = false;
       return weigh_arcs(std::move(to_weigh), patches, work, options, starts);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <vector>
 
 #include "tests/support/answered_touches.h"
 #include "tests/support/scene_data.h"
@@ -17,18 +18,15 @@ constexpr double kTouchSigma = 2e-5;  // [m]
 
 /// So many touches anywhere on an arc of the circle, of that angle, in no order.
 Recognition answer_on_arc(int count, double angle, const Pose2& pose, std::mt19937_64& rng) {
-  RecognizerOptions options;
-  options.memory.most_lone_touches = static_cast<std::size_t>(count);
-  Recognizer recognizer(options);
-  PatchContext context;
+  std::vector<Vec2> touches_m;
   for (int i = 0; i < count; ++i) {
     const double t = test::uniform(rng, 0.0, angle);
     const Vec2 place_m = pose * Vec2(kRadius * Vec2(std::cos(t), std::sin(t)));
-    const ContactSample sample{place_m + test::normal_pair(rng, kTouchSigma), kTouchSigma, 0};
-    recognizer.add(context, {&sample, 1});
-    ++context.patch;
+    touches_m.push_back(place_m + test::normal_pair(rng, kTouchSigma));
   }
-  return recognizer.recognize();
+  RecognizerOptions options;
+  options.memory.most_lone_touches = touches_m.size();
+  return test::answer_to_touches(touches_m, kTouchSigma, options);
 }
 
 /// Touches that are close together by chance were once taken for one place: the mean of those that

@@ -5,9 +5,9 @@
 #include <random>
 #include <vector>
 
-#include "core/recognition/recognizer.h"
 #include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
+#include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -18,14 +18,13 @@ constexpr double kStrokeSigma = 1e-4;  // [m]
 /// A straight stroke of evenly spaced samples.
 Recognition answer_to_stroke(double deviations, int count, const Pose2& pose,
                              std::mt19937_64& rng) {
-  std::vector<ContactSample> samples;
+  test::Scene scene;
+  std::vector<Vec2>& stroke_m = scene.patches.emplace_back();
   for (int i = 0; i < count; ++i) {
-    const Vec2 place(kStrokeSigma * deviations * i / (count - 1), 0.0);
-    samples.push_back({pose * Vec2(place + test::normal_pair(rng, kStrokeSigma)), kStrokeSigma, 0});
+    const Vec2 place_m(kStrokeSigma * deviations * i / (count - 1), 0.0);
+    stroke_m.push_back(pose * Vec2(place_m + test::normal_pair(rng, kStrokeSigma)));
   }
-  Recognizer recognizer;
-  recognizer.add(PatchContext{}, samples);
-  return recognizer.recognize();
+  return test::recognise(scene, kStrokeSigma);
 }
 
 /// Each sample on the nearest of three branches that lie within the noise, a cubical parabola laid

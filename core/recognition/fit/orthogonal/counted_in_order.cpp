@@ -45,16 +45,6 @@ TurnsBack turns_of(const PolynomialCoefficients& c) {
   return turns;
 }
 
-double squares_of(const PolynomialBranches& curve, std::span<const StrokeSample> stroke,
-                  std::span<const double> feet) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < stroke.size(); ++i) {
-    const double weight = stroke[i].weight;
-    sum += weight * weight * (curve.position(feet[i]) - stroke[i].position).squaredNorm();
-  }
-  return sum;
-}
-
 }  // namespace
 
 PolynomialFit counted_in_order(PolynomialFit fit, const FitData& data, WorkBudget& work) {
@@ -73,9 +63,9 @@ PolynomialFit counted_in_order(PolynomialFit fit, const FitData& data, WorkBudge
       continue;
     }
     work.spend(WorkKind::SoughtFoot, points.size());
-    const double nearest = squares_of(curve, stroke, feet);
+    const double nearest = way.squares_of(stroke, feet);
     way.put_in_order(stroke, 2.0 * kNegligibleLogOdds, feet);
-    fit.chi2 += std::max(squares_of(curve, stroke, feet) - nearest, 0.0);
+    fit.chi2 += std::max(way.squares_of(stroke, feet) - nearest, 0.0);
   }
   return fit;
 }

@@ -52,6 +52,16 @@ class WayAlong {
     }
   }
 
+  /// Weighed squares of the distances from feet at these parameters.
+  double squares_of(std::span<const StrokeSample> stroke, std::span<const double> feet) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < stroke.size(); ++i) {
+      const double weight = stroke[i].weight;
+      sum += weight * weight * (curve_.position(feet[i]) - stroke[i].position).squaredNorm();
+    }
+    return sum;
+  }
+
   /// How often the stroke breaks that rule with feet at these parameters.
   int jumps_of(std::span<const StrokeSample> stroke, std::span<const double> feet) const {
     int count = 0;

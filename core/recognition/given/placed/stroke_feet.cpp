@@ -43,24 +43,7 @@ TurnsBack turns_of(const CubicSpline& curve) {
   return turns;
 }
 
-/// Of weighed residuals. That of a stated noise is 1, however far off the curve is: the likelihood
-/// counts jumps so. An unknown one is that of the residuals at the feet, if the curve is near.
-template <typename C>
-double variance_of(const C& curve, std::span<const StrokeSample> stroke,
-                   std::span<const double> feet, bool stated) {
-  if (stated) {
-    return 1.0;
-  }
-  double sum = 0.0;
-  for (std::size_t i = 0; i < stroke.size(); ++i) {
-    const StrokeSample& sample = stroke[i];
-    sum +=
-        sample.weight * sample.weight * (curve.position(feet[i]) - sample.position).squaredNorm();
-  }
-  return sum / static_cast<double>(stroke.size());
-}
-
-/// Calls `visit(cubic, way, stroke, feet, begin)` for each stroke without tips over a curve that
+/// Calls `visit(way, stroke, feet, begin)` for each stroke without tips over a curve that
 /// has turns; `begin`: its first point.
 template <typename Visit>
 void visit_strokes(const Curve& curve, const PlacedCurve<double>& placed,
@@ -84,7 +67,7 @@ void visit_strokes(const Curve& curve, const PlacedCurve<double>& placed,
           stroke.push_back({Vec2(p.x, p.y), points[i].weight});
           feet.push_back(placed.feet[i].x);
         }
-        visit(cubic, way, std::span<const StrokeSample>(stroke), std::span<double>(feet), begin);
+        visit(way, std::span<const StrokeSample>(stroke), std::span<double>(feet), begin);
       }
       begin = end;
     }
@@ -105,27 +88,31 @@ bool put_in_order(PlacedCurve<double>* placed, std::span<const WeighedPoint<doub
   if (!curve) {
     return false;
   }
-  visit_strokes(*curve, *placed, points,
-                [&](const auto& cubic, const auto& way, auto stroke, auto feet, std::size_t begin) {
-                  if (way.jumps_of(stroke, feet) == 0) {
-                    return;
-                  }
-                  const double variance = variance_of(cubic, stroke, feet, points[begin].stated);
-                  way.put_in_order(stroke, 2.0 * kNegligibleLogOdds * variance, feet);
-                  for (std::size_t i = 0; i < feet.size(); ++i) {
-                    placed->feet[begin + i] = {feet[i], 0.0};
-                  }
-                });
+  visit_strokes(
+      *curve, *placed, points, [&](const auto& way, auto stroke, auto feet, std::size_t begin) {
+        if (way.jumps_of(stroke, feet) == 0) {
+          return;
+        }
+        // Of weighed residuals. That of a stated noise is 1, however far off the curve is:
+        // the likelihood counts jumps so. An unknown one is that of the residuals at the
+        // feet, if the curve is near.
+        const double variance = points[begin].stated ? 1.0
+                                                     : way.squares_of(stroke, feet) /
+                                                           static_cast<double>(stroke.size());
+        way.put_in_order(stroke, 2.0 * kNegligibleLogOdds * variance, feet);
+        for (std::size_t i = 0; i < feet.size(); ++i) {
+          placed->feet[begin + i] = {feet[i], 0.0};
+        }
+      });
   return true;
 }
 
 int jumps_of(const PlacedCurve<double>& placed, std::span<const WeighedPoint<double>> points) {
   int count = 0;
   const auto curve = curve_of(placed);
-  visit_strokes(*curve, placed, points,
-                [&](const auto&, const auto& way, auto stroke, auto feet, std::size_t) {
-                  count += way.jumps_of(stroke, feet);
-                });
+  visit_strokes(*curve, placed, points, [&](const auto& way, auto stroke, auto feet, std::size_t) {
+    count += way.jumps_of(stroke, feet);
+  });
   return count;
 }
 
