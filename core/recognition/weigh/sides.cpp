@@ -114,6 +114,11 @@ bool are_one_way(const SideChoice& a, const SideChoice& b, const FitData& centre
   return true;
 }
 
+/// A closed curve or one that bends to one side alone.
+bool is_conic(CurveClass candidate) {
+  return candidate != CurveClass::Line && (class_bit(candidate) & kCubics) == 0;
+}
+
 /// The ways tried so far, and what is known of the tips' directions by now.
 class TriedWays {
  public:
@@ -193,7 +198,7 @@ class TriedWays {
   void try_all(const std::vector<std::vector<int>>& ways) {
     const std::size_t before = choices_.size();
     for (const std::vector<int>& sides : ways) {
-      if (choices_.empty() || by_.work.allows()) {
+      if (choices_.empty() || (!is_excluded(sides) && by_.work.allows())) {
         choices_.push_back(judged(fit_way(seen_.touches, sides, now_, starts_, centres_)));
       }
     }
@@ -208,6 +213,17 @@ class TriedWays {
                      : fit_way_again(std::move(choice), seen_.touches, now_, of_others, &centres_));
       }
     }
+  }
+
+  /// Whether it is said that tips do not lie so, and a conic that all points have agrees. (It would
+  /// take a way of overwhelming evidence to speak against both; the search of one takes as much
+  /// work as the first.)
+  bool is_excluded(const std::vector<int>& sides) const {
+    return by_.touched_from != TouchedFrom::Unknown && possible_.ways.size() > 1 &&
+           sides == possible_.ways[1] && any_bends() &&
+           std::any_of(choices_.begin(), choices_.end(), [&](const SideChoice& choice) {
+             return choice.expected && is_conic(choice.candidate) && fits_all(choice, by_);
+           });
   }
 
   SideChoice judged(SideChoice choice) {
@@ -352,8 +368,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   // thick has it on both sides of a line.
   const bool conics_tell = tried.any_bends();
   const auto tells_sides = [&](const SideChoice& choice) {
-    return choice.candidate == CurveClass::Line ||
-           (conics_tell && (class_bit(choice.candidate) & kCubics) == 0);
+    return choice.candidate == CurveClass::Line || (conics_tell && is_conic(choice.candidate));
   };
   if (may_turn && !turn_first && by.work.allows() && !any_that(tells_sides)) {
     tried.try_along_centres();

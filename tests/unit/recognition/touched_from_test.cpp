@@ -109,6 +109,37 @@ TEST(TouchedFrom, APinThinnerThanTheTipIsNoBore) {
   }
 }
 
+// Where a conic has all centres outside its bends, as is said, nothing is sought inside: that is
+// half of all work, and an answer on few samples may take little.
+TEST(TouchedFrom, SparesTheSearchOnTheOtherSide) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigmaM);
+  double work_if_said = 0.0;
+  double work_if_not = 0.0;
+  for (int part = 0; part < test::stress_count(20); ++part) {
+    Recognizer said(options_with(TouchedFrom::Outside));
+    Recognizer not_said(options_with(TouchedFrom::Unknown));
+    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
+    for (std::uint32_t patch = 0; patch < 2; ++patch) {
+      std::vector<ContactSample> stroke;
+      for (int i = 0; i < 40; ++i) {
+        const double t = first + 3.0 * patch + 1.2 * i / 40.0;
+        const Vec2 outwards = Vec2(0.02 * std::cos(t), 0.03 * std::sin(t)).normalized();
+        const Vec2 place(0.03 * std::cos(t), 0.02 * std::sin(t));
+        stroke.push_back({place + kTipM * outwards + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
+      }
+      said.add({0, patch, kTipM}, stroke);
+      not_said.add({0, patch, kTipM}, stroke);
+    }
+    const Recognition answer = said.recognize();
+    EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
+    EXPECT_EQ(answer.status, RecognitionStatus::Recognized) << name_of(answer.doubt);
+    work_if_said += answer.work.spent();
+    work_if_not += not_said.recognize().work.spent();
+  }
+  EXPECT_LT(work_if_said, 0.6 * work_if_not);
+}
+
 TEST(TouchedFrom, AStatedSideHoldsAgainstIt) {
   // Against the clock, material on the right: a bore.
   const Recognition bore = touched_circle(TouchedFrom::Outside, 0, MaterialSide::Right);
