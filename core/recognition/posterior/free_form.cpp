@@ -40,14 +40,35 @@ struct SectionNodes {
   Nodes weight;  ///< inverse standard deviation of y
 };
 
+/// The cosine of the angle between the path at a reduced point and its section's chord. A sample
+/// that stands for itself has the direction of the chord between its neighbours, which noise of the
+/// weight turns: what it may make of the sine's square is taken off. (Else samples closer than
+/// their noise would lie in all directions, and nearer to any path.)
+double cosine_to_axis(const SmoothModel& smooth, const ReducedSection& section, std::size_t k,
+                      double weight) {
+  const std::vector<FitPoint>& points = smooth.reduced.points;
+  const double sine = cross(section.axis, points[k].tangent);
+  double square = sine * sine;
+  if (section.kept) {
+    constexpr double kDeviations = 3.0;
+    const std::size_t before = std::max(k, section.begin + 1) - 1;
+    const std::size_t after = std::min(k + 1, section.end - 1);
+    const double chord = (points[after].position - points[before].position).norm();
+    const double in_noise = weight * points[k].inverse_sigma * chord;
+    square -= 2.0 * kDeviations * kDeviations / (in_noise * in_noise);
+  }
+  return std::sqrt(1.0 - std::clamp(square, 0.0, 1.0));
+}
+
 SectionNodes nodes_of(const SmoothModel& smooth, const ReducedSection& section, std::size_t begin,
                       double weight) {
   const auto n = static_cast<Eigen::Index>(std::min<std::size_t>(kMostNodes, section.end - begin));
   SectionNodes nodes{Nodes(n), Nodes(n), Nodes(n)};
   for (Eigen::Index i = 0; i < n; ++i) {
-    const FitPoint& point = smooth.reduced.points[begin + static_cast<std::size_t>(i)];
+    const std::size_t k = begin + static_cast<std::size_t>(i);
+    const FitPoint& point = smooth.reduced.points[k];
     const Vec2 away = point.position - section.middle;
-    const double cosine = point.tangent.isZero() ? 1.0 : std::abs(point.tangent.dot(section.axis));
+    const double cosine = point.tangent.isZero() ? 1.0 : cosine_to_axis(smooth, section, k, weight);
     nodes.x[i] = away.dot(section.axis);
     nodes.y[i] = cross(section.axis, away);
     nodes.weight[i] = weight * point.inverse_sigma * cosine;
