@@ -47,7 +47,7 @@ bool is_stated(const Arcs& arcs, double variance) {
 
 // Touches that lie too far apart to show their noise leave the class alone to tell it.
 bool noise_is_known_without_class(const Arcs& arcs, const Likelihood& likelihood) {
-  return likelihood.sigma_known || arcs.smooth.dof() >= kFewestDegreesOfNoise;
+  return likelihood.sigma_known || arcs.smooth.dof() >= kDegreesThatShowNoise;
 }
 
 Likelihood likelihood_of(const Arcs& arcs, double form_deviation_m) {

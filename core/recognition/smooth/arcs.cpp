@@ -10,7 +10,7 @@ namespace palpate {
 namespace {
 
 /// Whether enough degrees of freedom are left to estimate the noise from.
-bool shows_noise(const SmoothModel& smooth) { return smooth.dof() >= kFewestDegreesOfNoise; }
+bool shows_noise(const SmoothModel& smooth) { return smooth.dof() >= kDegreesThatShowNoise; }
 
 /// Sets the noise of all points from the smooth model's residuals. Returns true if it is no larger
 /// than rounding: then it counts as known.

@@ -6,8 +6,8 @@
 
 namespace palpate {
 
-/// Fewest degrees of freedom for which the smooth model's residuals give a noise: four leave it a
-/// relative standard deviation of 1 / sqrt(2 * 4), 35 %.
+/// Fewest degrees of freedom for which what a class leaves gives a noise: four leave it a relative
+/// standard deviation of 1 / sqrt(2 * 4), 35 %.
 inline constexpr int kFewestDegreesOfNoise = 4;
 
 struct Arcs {

@@ -107,7 +107,8 @@ std::optional<SectionFit> fit_section(const FitData& data, const PatchSpan& sect
   };
   const int by_residuals = choose(false);
   fit.degree = noise.known ? choose(true) : by_residuals;
-  fit.shows_noise = by_residuals + 2 <= highest && !is_no_graph(points);
+  fit.is_graph = !is_no_graph(points);
+  fit.shows_noise = by_residuals + 2 <= highest && fit.is_graph;
   return fit;
 }
 

@@ -46,6 +46,7 @@ struct SectionFit {
   /// Two, because an arc that is nearly symmetric gains only from every second degree. Nor do
   /// samples show noise that are no graph over their chord.
   bool shows_noise = false;
+  bool is_graph = true;  ///< over the chord: the samples do not turn too far for that
 
   /// Two degrees more than the criterion chose: terms that are not yet significant in one patch may
   /// distinguish classes when there are several patches.

@@ -171,24 +171,25 @@ struct Yardstick {
 
 /// True if the polynomial does not follow a section: it leaves more than noise, because only some
 /// of its samples lie in a bend (by chance this happens to fewer than one section in a million, and
-/// then costs only time), or its samples are too few for the two degrees more that reduced points
-/// need, so that it may swing between them (next to a cusp). Where no section shows the noise, what
-/// such a one leaves is it, unless it is so short that its halves would have no polynomial: what a
-/// quadratic or cubic leaves of eight samples is form more often than noise.
+/// then costs only time), or its samples are no graph over their chord, or too few for the two
+/// degrees more that reduced points need, so that it may swing between them (next to a cusp). Where
+/// no section shows the noise, what a graph leaves of too few is it, unless they are so few that
+/// its halves would have no polynomial: what a quadratic or cubic leaves of eight samples is form
+/// more often than noise.
 bool is_not_followed(const Section& section, const Yardstick& yardstick) {
   const int dof = section.dof();
-  return dof > 0 && (is_no_noise(section.chi2(), dof, yardstick.noise) ||
+  return dof > 0 && (!section.fit->is_graph || is_no_noise(section.chi2(), dof, yardstick.noise) ||
                      (section.fit->lacks_degrees() &&
                       (yardstick.shown_elsewhere || section.points.size() < 2 * kFewestOfSection)));
 }
 
-/// True if most degrees of freedom are those of sections that have degrees to spare.
+/// True if most degrees of freedom are those of graphs that have degrees to spare.
 bool mostly_with_degrees(const std::vector<Section>& sections) {
   int with = 0;
   int lacking = 0;
   for (const Section& section : sections) {
     if (section.fit) {
-      (section.fit->lacks_degrees() ? lacking : with) += section.dof();
+      (section.fit->is_graph && !section.fit->lacks_degrees() ? with : lacking) += section.dof();
     }
   }
   return with > lacking;
@@ -259,6 +260,14 @@ double noise_time_of(const FitData& data, const std::vector<Section>& sections, 
   return more > kNothing ? 1.0 + more : 1.0;
 }
 
+int degrees_of(const std::vector<Section>& sections) {
+  int dof = 0;
+  for (const Section& section : sections) {
+    dof += section.dof();
+  }
+  return dof;
+}
+
 std::size_t fitted_points(const std::vector<Section>& sections) {
   std::size_t count = 0;
   for (const Section& section : sections) {
@@ -293,6 +302,11 @@ SmoothModel smooth_model_of(FitData* data, SectionNoise noise, StatedNoise state
   }
   const Yardstick yardstick{shown, noise.known || mostly_with_degrees(sections)};
   sections = followed(*data, std::move(sections), noise, yardstick);
+  if (!noise.known && degrees_of(sections) < kDegreesThatShowNoise) {
+    for (Section& section : sections) {
+      section.fit.reset();
+    }
+  }
   model.fitted += fitted_points(sections);
 
   NeighbourSums neighbours;

@@ -109,10 +109,9 @@ ByClass<std::optional<CanonicalFit>> placed_canonically(const Contenders& conten
 }
 
 /// Where all ways in which the tips may lie are to be followed from; the first is the one taken.
-std::vector<SidedStart> starts_of(const SidedFits& sided, const Contenders& contenders) {
+std::vector<SidedStart> starts_of(const SidedFits& sided, const ClassFits& of_taken) {
   const SideChoice& taken = sided.choice();
-  std::vector<SidedStart> starts{{taken.sides, warm_start_from(contenders.coarse, taken.reduced)}};
-  starts.front().modes = kept_modes(contenders.evidences, taken.reduced);
+  std::vector<SidedStart> starts{{taken.sides, warm_start_from(of_taken, taken.reduced)}};
   for (const SideChoice& choice : sided.choices) {
     if (&choice != &taken) {
       starts.push_back({choice.sides, warm_start_from(choice.fits, choice.reduced)});
@@ -155,7 +154,8 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   if (best && !best->at_limit && !contenders.evidences.classes[w.best]) {
     weigh_on_reduced(w.best, context, &contenders);  // so far by straight paths alone
   }
-  w.starts = starts_of(sided, contenders);
+  w.starts = starts_of(sided, contenders.coarse);
+  w.starts.front().modes = kept_modes(contenders.evidences, sided.choice().reduced);
   w.best_evidence = std::move(contenders.evidences.classes[w.best]);
   w.best_on_reduced = std::move(contenders.evidences.on_reduced[w.best]);
   w.stated = stated;
@@ -222,7 +222,11 @@ std::optional<Arcs> bettered(Arcs* arcs, const std::optional<Placed>& best) {
 struct ArcsToWeigh {
   Arcs arcs;
   std::optional<FreeForm> over_noise = {};
+  int searches = 1;  ///< for the classes, with this one
 };
+
+/// In units of the noise that free paths leave, then of the one that the best class has left.
+constexpr int kMostSearches = 2;
 
 /// The same in units of so many times the noise.
 ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
@@ -232,22 +236,36 @@ ArcsToWeigh in_units_of(ArcsToWeigh unseen, double times) {
   return unseen;
 }
 
-/// Where the sections show no noise: how many times that of the arcs the best class leaves, if that
-/// is more. What coordinates are determined is told by noise of about that size, and not by less.
-std::optional<double> times_the_noise(const ArcsToWeigh& to_weigh,
-                                      const std::optional<Placed>& best) {
-  const Arcs& arcs = to_weigh.arcs;
-  if (!best || !arcs.may_not_follow || !to_weigh.over_noise) {
+/// Where the sections show no noise: how many times that of the arcs the class leaves that
+/// explains the points best, if that is another size. By much more than the noise no class is told
+/// from another, and not all their minima; what coordinates are determined is told by noise of
+/// about its size. Which class is best is told by the criterion of Schwarz.
+std::optional<double> times_the_noise(const ArcsToWeigh& to_weigh, const SideChoice& choice) {
+  if (!to_weigh.over_noise || to_weigh.searches >= kMostSearches) {
     return std::nullopt;
   }
-  const double dof = static_cast<double>(residual_count(arcs.data)) -
-                     degrees_of_freedom(best->canonical.shape.curve_class);
+  const double least = kExact / to_weigh.arcs.sigma;
+  const double n = static_cast<double>(residual_count(choice.reduced));
+  double lowest = std::numeric_limits<double>::infinity();
+  double dof = 0.0;
+  double times = 1.0;
+  for (const auto& fit : choice.fits) {
+    if (!fit || fit->at_limit) {
+      continue;
+    }
+    const double chi2 = std::max(fit->chi2, n * least * least);
+    const double unknowns = degrees_of_freedom(fit->curve_class);
+    const double criterion = n * std::log(chi2) + unknowns * std::log(n);
+    if (criterion < lowest) {
+      lowest = criterion;
+      dof = n - unknowns;
+      times = std::sqrt(chi2 / dof);
+    }
+  }
   // By less, what the prior leaves of a coordinate is off by a factor of 2 at most.
   constexpr double kAsGood = 2.0;
-  if (dof < kFewestDegreesOfNoise || !(best->chi2 > kAsGood * kAsGood * dof)) {
-    return std::nullopt;
-  }
-  return std::sqrt(best->chi2 / dof);
+  const bool is_other = std::max(times, 1.0 / times) > kAsGood;
+  return dof >= kFewestDegreesOfNoise && is_other ? std::optional(times) : std::nullopt;
 }
 
 /// Whether rounding explains all that the best class leaves.
@@ -284,6 +302,14 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
                                     options.touched_from, edges ? &*edges : nullptr},
                                    starts);
   for_verdict.reset();
+  if (work.allows()) {
+    if (const auto times = times_the_noise(to_weigh, sided.choice())) {
+      to_weigh = in_units_of(std::move(to_weigh), *times);
+      ++to_weigh.searches;
+      const std::vector<SidedStart> found = starts_of(sided, sided.choice().fits);
+      return weigh_arcs(std::move(to_weigh), patches, work, options, found);
+    }
+  }
   const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
     SideChoice& choice = sided.choices[sided.taken];
     // Where there are several they may have to be judged again.
@@ -294,11 +320,6 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
   Contenders contenders = contenders_of_choice(at_first, of_paths);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   if (work.allows()) {
-    if (const auto times = times_the_noise(to_weigh, best_placed)) {
-      to_weigh = in_units_of(std::move(to_weigh), *times);
-      to_weigh.arcs.may_not_follow = false;
-      return weigh_arcs(std::move(to_weigh), patches, work, options, starts);
-    }
     if (auto nearer = bettered(&arcs, best_placed)) {
       return weigh_arcs({*std::move(nearer)}, patches, work, options, starts);
     }

@@ -157,6 +157,50 @@ TEST(SmoothModel, NoSectionLeadsRoundACusp) {
   }
 }
 
+// Six strokes from one side of an ellipse round its end to the other, every 20 degrees. A parabola
+// over the chord leaves a tenth of its size, which no noise of a probe is.
+TEST(SmoothModel, NoPolynomialTellsTheNoiseOfSamplesThatAreNoGraph) {
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, 1e-4);
+  for (int i = 0; i < 50; ++i) {
+    FitData data;
+    data.noise_is_stated = false;
+    for (int stroke = 0; stroke < 6; ++stroke) {
+      const std::size_t begin = data.points.size();
+      const double first = -1.5 + test::uniform(rng, -0.1, 0.1);
+      for (int k = 0; k < 10; ++k) {
+        const double t = first + 0.35 * k;
+        FitPoint point;
+        const double dx = noise(rng);
+        point.position = {std::cos(t) + dx, 0.3 * std::sin(t) + noise(rng)};
+        data.points.push_back(point);
+      }
+      data.patches.push_back({begin, data.points.size()});
+    }
+    const SmoothModel smooth = fit_smooth_model(&data, false);
+    EXPECT_EQ(smooth.reduced.points.size(), data.points.size()) << i;
+    EXPECT_EQ(smooth.dof(), 0) << i;
+  }
+}
+
+// A section of ten samples leaves five degrees of freedom, by which nobody can say whether it
+// leaves noise or form. Where several leave enough, they show it.
+TEST(SmoothModel, AFewDegreesShowNoNoise) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const std::size_t strokes : {2U, 12U}) {
+    FitData data;
+    data.noise_is_stated = false;
+    for (std::size_t stroke = 0; stroke < strokes; ++stroke) {
+      const FitData arc = circular_arc(0.3, 10, 1e-3, rng);
+      data.patches.push_back({data.points.size(), data.points.size() + arc.points.size()});
+      data.points.insert(data.points.end(), arc.points.begin(), arc.points.end());
+    }
+    const SmoothModel smooth = fit_smooth_model(&data, false);
+    EXPECT_EQ(smooth.dof() >= kDegreesThatShowNoise, strokes > 2) << smooth.dof();
+    EXPECT_EQ(smooth.dof() == 0, strokes == 2) << smooth.dof();
+  }
+}
+
 TEST(SmoothModel, NoiseThatIsStatedTooLowIsNotFollowed) {
   std::mt19937_64 rng = test::test_rng();
   constexpr double kTooLow = 1e-3;

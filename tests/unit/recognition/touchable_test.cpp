@@ -95,6 +95,27 @@ TEST(Touchable, IsNoNeedleThatExplainsTheNoiseOfALine) {
   }
 }
 
+/// Every 60 degrees round an ellipse. Where nobody states the noise it may be told by what leaves
+/// form, and be larger than the steps: a stroke then shows no direction, unless it is held against
+/// what the ellipse itself leaves of it.
+TEST(Touchable, IsJudgedByNoMoreNoiseThanTheFitLeaves) {
+  constexpr double kTooLarge = 0.17;  // of a
+  constexpr double kSigma = 1e-3;
+  const ConicCoefficients ellipse = conic(1.0, 0.5, 1.0);
+  std::mt19937_64 rng = test::test_rng();
+  std::normal_distribution<double> noise(0.0, kSigma);
+  for (int draw = 0; draw < test::stress_count(100); ++draw) {
+    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
+    std::vector<Vec2> places;
+    for (int i = 0; i < 18; ++i) {
+      const double angle = first + kPi / 3.0 * i;
+      const double x = std::cos(angle) + noise(rng);
+      places.emplace_back(x, 0.5 * std::sin(angle) + noise(rng));
+    }
+    EXPECT_TRUE(touchable(ellipse, places, kTooLarge)) << draw;
+  }
+}
+
 /// The samples' nearest feet on a curve, in their order.
 bool touchable(const PolynomialCoefficients& c, const std::vector<Vec2>& places, double sigma) {
   FitData data;

@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/curves/curve_class.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/orthogonal/polynomial_foot.h"
 
 namespace palpate {
@@ -20,9 +22,18 @@ constexpr std::size_t kOneIn = 10;
 /// that is sharper than they are apart.
 constexpr std::size_t kFewestWithOne = 4;
 
-/// Noise that takes a point to the other side, or turns a direction round, is out by so many of its
-/// standard deviations.
-constexpr double kDeviations = 6.0;
+/// How far noise goes at most, in units of what the points state: six of its standard deviations.
+/// It has no size there where nobody states it and no section shows it; then it is no larger than
+/// what leaves as little as the fit does with a negligible probability. Of k degrees of freedom
+/// chi-square is below a k with a probability of at most (a exp(1 - a))^(k / 2) (H. Chernoff,
+/// 1952), which is below p for a = exp(-1 + 2 log(p) / k).
+double farthest_noise(double chi2, const FitData& data) {
+  constexpr double kDeviations = 6.0;
+  const double dof = static_cast<double>(residual_count(data)) -
+                     degrees_of_freedom(CurveClass::CubicSpline);  // the most
+  const double least = dof > 0.0 ? dof * std::exp(-1.0 - 2.0 * kNegligibleLogOdds / dof) : 0.0;
+  return chi2 < least ? kDeviations * std::sqrt(chi2 / least) : kDeviations;
+}
 
 /// True if so many of a patch's points that show a direction go against the others.
 bool turns(std::size_t against, std::size_t points) {
@@ -50,7 +61,7 @@ struct SidesSeen {
 /// centres may be beyond that, between the branches, where their feet are not. Noise takes points
 /// at the vertex of a small a beyond the axis too: where most are farther from it than noise goes,
 /// these tell. (Two branches about the noise of a line have most points near the axis.)
-bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
+bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points, double farthest) {
   const ConicCoefficients& q = fit.coefficients;
   const Vec2 centre = centre_of(q);
   // Along the real axis the polynomial changes sign from the centre outwards.
@@ -67,7 +78,7 @@ bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
     const Vec2& place = points[i].offset > 0.0 ? fit.feet[i] : points[i].position;
     const double along = (place - centre).dot(axis);
     of_all.add(along);
-    if (std::abs(along) * points[i].inverse_sigma > kDeviations) {
+    if (std::abs(along) * points[i].inverse_sigma > farthest) {
       of_far.add(along);
       ++far;
     }
@@ -76,11 +87,11 @@ bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points) {
 }
 
 /// Whether two points are so far apart that noise does not turn the direction from one to the other
-/// round: it would have to be out by six of its standard deviations.
-bool tells_direction(const FitPoint& from, const FitPoint& to) {
+/// round: it would have to be out by `farthest` of its standard deviations.
+bool tells_direction(const FitPoint& from, const FitPoint& to, double farthest) {
   const double v = 1.0 / (from.inverse_sigma * from.inverse_sigma);
   const double w = 1.0 / (to.inverse_sigma * to.inverse_sigma);
-  return (to.position - from.position).squaredNorm() > kDeviations * kDeviations * (v + w);
+  return (to.position - from.position).squaredNorm() > farthest * farthest * (v + w);
 }
 
 /// Two points of a patch, by their numbers in it.
@@ -92,11 +103,11 @@ struct Chord {
 /// The chord that shows the direction of travel at point `i` of a patch: between its nearest
 /// neighbours on both sides that are far enough apart to tell it; nullopt where none are. (A smooth
 /// model's tangents will not do: where a patch is no longer than its noise they turn round.)
-std::optional<Chord> travel_at(std::span<const FitPoint> patch, std::size_t i) {
+std::optional<Chord> travel_at(std::span<const FitPoint> patch, std::size_t i, double farthest) {
   const std::size_t last = patch.size() - 1;
   for (std::size_t k = 1; k <= last; k = 2 * k) {
     const Chord chord{i - std::min(i, k), std::min(i + k, last)};
-    if (tells_direction(patch[chord.from], patch[chord.to])) {
+    if (tells_direction(patch[chord.from], patch[chord.to], farthest)) {
       return chord;
     }
   }
@@ -105,10 +116,10 @@ std::optional<Chord> travel_at(std::span<const FitPoint> patch, std::size_t i) {
 
 /// Whether the conic is so thick at a foot that noise does not take the point to its other side.
 /// `g`: the gradient there.
-bool tells_side(const ConicCoefficients& q, const Vec2& g, const FitPoint& point) {
+bool tells_side(const ConicCoefficients& q, const Vec2& g, const FitPoint& point, double farthest) {
   // From the foot along the normal the polynomial is |g| s + a s^2.
   const double g2 = g.squaredNorm();
-  return g2 * std::sqrt(g2) * point.inverse_sigma > kDeviations * std::abs(quadratic_part(q, g));
+  return g2 * std::sqrt(g2) * point.inverse_sigma > farthest * std::abs(quadratic_part(q, g));
 }
 
 /// A conic at the foot of a point.
@@ -214,7 +225,8 @@ class Directions {
 
 bool is_touchable(const ImplicitFit& fit, const FitData& data) {
   const ConicCoefficients& q = fit.coefficients;
-  if (!(discriminant(q) > 0.0 || on_one_branch(fit, data.points))) {
+  const double farthest = farthest_noise(fit.chi2, data);
+  if (!(discriminant(q) > 0.0 || on_one_branch(fit, data.points, farthest))) {
     return false;
   }
   for (std::size_t p = 0; p < data.patches.size(); ++p) {
@@ -224,13 +236,13 @@ bool is_touchable(const ImplicitFit& fit, const FitData& data) {
     std::size_t thick = 0;
     for (std::size_t i = 0; i < patch.size(); ++i) {
       const Vec2 gradient = conic_gradient(q, fit.feet[data.patches[p].begin + i]);
-      feet.push_back({gradient, tells_side(q, gradient, patch[i])});
+      feet.push_back({gradient, tells_side(q, gradient, patch[i], farthest)});
       thick += feet.back().is_thick ? 1 : 0;
     }
     Directions all(data.patches[p].is_joined);
     Directions where_thick(data.patches[p].is_joined);
     for (std::size_t i = 0; i < patch.size(); ++i) {
-      const std::optional<Chord> chord = travel_at(patch, i);
+      const std::optional<Chord> chord = travel_at(patch, i, farthest);
       if (!chord || goes_round(feet[chord->from], feet[chord->to])) {
         continue;
       }
@@ -296,13 +308,14 @@ std::optional<std::vector<double>> feet_on_one_strand(const PolynomialFit& fit, 
   const bool fewer_are_beyond = 2 * beyond <= feet.size();
   const auto is_of_fewer = [&](double t) { return is_beyond(t) == fewer_are_beyond; };
   const auto first = std::find_if_not(feet.begin(), feet.end(), is_of_fewer);
+  const double farthest = farthest_noise(fit.chi2, data);
   double beside = *first;  // the last foot on the strand of the others
   for (std::size_t i = 0; i < feet.size(); ++i) {
     if (is_of_fewer(feet[i])) {
       const FitPoint& point = data.points[patch.begin + i];
       const PlacedPoint there = follow_foot_point(fit.coefficients, point.position, beside);
       if (is_of_fewer(there.t) ||
-          std::abs(there.signed_distance) * point.inverse_sigma > kDeviations) {
+          std::abs(there.signed_distance) * point.inverse_sigma > farthest) {
         return std::nullopt;
       }
       feet[i] = there.t;
@@ -314,13 +327,13 @@ std::optional<std::vector<double>> feet_on_one_strand(const PolynomialFit& fit, 
 
 /// Whether a parameter runs to and fro along a patch, as samples half of it apart show, whose order
 /// noise does not reverse. nullopt if there are none.
-std::optional<bool> runs_to_and_fro(std::span<const double> feet,
-                                    std::span<const FitPoint> points) {
+std::optional<bool> runs_to_and_fro(std::span<const double> feet, std::span<const FitPoint> points,
+                                    double farthest) {
   const std::size_t lag = points.size() / 2;
   std::size_t forward = 0;
   std::size_t told = 0;
   for (std::size_t i = 0; i + lag < points.size(); ++i) {
-    if (tells_direction(points[i], points[i + lag])) {
+    if (tells_direction(points[i], points[i + lag], farthest)) {
       ++told;
       forward += feet[i + lag] >= feet[i] ? 1 : 0;
     }
@@ -344,13 +357,14 @@ bool leaves_out_more(const PolynomialFit& fit, std::vector<double> feet, double 
 }  // namespace
 
 bool is_touchable(const PolynomialFit& fit, const FitData& data) {
+  const double farthest = farthest_noise(fit.chi2, data);
   for (const PatchSpan& patch : data.patches) {
     const std::span<const FitPoint> points(data.points.data() + patch.begin, patch.size());
     const std::span<const double> feet(fit.t.data() + patch.begin, patch.size());
-    const std::optional<bool> to_and_fro = runs_to_and_fro(feet, points);
+    const std::optional<bool> to_and_fro = runs_to_and_fro(feet, points, farthest);
     if (!to_and_fro ? goes_to_and_fro(fit, data, patch) : *to_and_fro) {
       const auto on_one = to_and_fro ? feet_on_one_strand(fit, data, patch) : std::nullopt;
-      if (!on_one || *runs_to_and_fro(*on_one, points)) {
+      if (!on_one || *runs_to_and_fro(*on_one, points, farthest)) {
         return false;
       }
     }
