@@ -108,8 +108,10 @@ struct OverSizes {
 OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, const CanonicalFit& placed,
                          const NoiseLaw& noise, double scatter, double samples, WorkBudget& work) {
   double squares = 0.0;
+  double weights = 0.0;
   for (const CoherentStep& step : steps) {
-    squares += step.at.residual * step.at.residual;
+    squares += step.at.residual * step.at.residual / step.at.variance;
+    weights += 1.0 / step.at.variance;
   }
   // Deviations: from 16 times the residuals (the shape would have absorbed all but a sixteenth)
   // down by factors of 4, at most four, to where the mean of all samples hides them.
@@ -117,8 +119,7 @@ OverSizes over_all_sizes(const std::vector<CoherentStep>& steps, const Canonical
   constexpr int kDeviations = 5;
   const double longest = longest_run(steps);
   const double least = 1.0 / std::sqrt(samples);
-  double deviation =
-      std::max(kTakenUp * std::sqrt(squares / static_cast<double>(steps.size())), 2.0 * least);
+  double deviation = std::max(kTakenUp * std::sqrt(squares / weights), 2.0 * least);
   OverSizes result;
   double prior = 0.0;
   for (int i = 0; i < kDeviations && deviation > least; ++i, deviation /= kSizeFactor) {

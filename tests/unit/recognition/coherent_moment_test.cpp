@@ -199,5 +199,39 @@ TEST(CoherentMoment, WithoutWhatIsSharedIsNoMoreThanTheBound) {
   }
 }
 
+/// A reduced point with twice the samples is two points at its place.
+TEST(CoherentMoment, DoesNotDependOnHowManyPointsStandForTheSamples) {
+  std::mt19937_64 rng = test::test_rng();
+  Touched scene = touched(kPi);
+  fit(shared(scene, rng) + noise(scene, rng), &scene);
+  const auto moment_of = [](const Touched& points) {
+    return coherent_moment(points.placed, points.data, law(), kSigmaNormalised, kScatter,
+                           test::unbounded_work());
+  };
+  const auto told = moment_of(scene);
+  Touched split = scene;
+  split.data.points.clear();
+  split.placed.points.clear();
+  for (PatchSpan& patch : split.data.patches) {
+    const std::size_t begin = split.data.points.size();
+    for (std::size_t i = patch.begin; i < patch.end; ++i) {
+      // Every point of the first half of a patch.
+      const int parts = 2 * (i - patch.begin) < patch.size() ? 2 : 1;
+      for (int part = 0; part < parts; ++part) {
+        split.data.points.push_back(scene.data.points[i]);
+        split.data.points.back().inverse_sigma /= std::sqrt(parts);
+        split.placed.points.push_back(scene.placed.points[i]);
+        split.placed.points.back().residual /= std::sqrt(parts);
+      }
+    }
+    patch = {begin, split.data.points.size()};
+  }
+  const auto by_parts = moment_of(split);
+  ASSERT_TRUE(told && by_parts);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    EXPECT_NEAR(by_parts->moment(i, i), told->moment(i, i), 1e-6 * told->moment(i, i));
+  }
+}
+
 }  // namespace
 }  // namespace palpate
