@@ -9,7 +9,8 @@ namespace palpate {
 namespace {
 
 /// Expected offset for a drift, by the same law: a drift of length L corresponds to the harmonic of
-/// order 1 / L (L in half extents).
+/// order 1 / L (L in half extents). The constant alone is expected to be as large: the lobes
+/// between would be seen, and it is not (core/README.md, "Deviations that neighbours share").
 double expected_offset(const Drift& drift) {
   const double order = std::clamp(1.0 / drift.length, 2.0, static_cast<double>(kHighestOrder));
   return drift.deviation / overtone(static_cast<int>(std::lround(order)));
