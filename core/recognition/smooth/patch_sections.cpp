@@ -17,7 +17,7 @@ void fit_or_halve(const FitData& data, const PatchSpan& points, const SectionNoi
   auto whole = fit_section(data, points, noise);
   constexpr int kHighDegree = OrthogonalPolynomials::kMaxDegree - 2;
   if (whole && whole->degree >= kHighDegree && points.size() >= 4 * kFewestOfSection) {
-    const std::size_t middle = points.begin + points.size() / 2;
+    const std::size_t middle = half_way(data, points.begin, points.end);
     const std::size_t first = sections->size();
     fit_or_halve(data, {points.begin, middle}, noise, sections, true);
     fit_or_halve(data, {middle, points.end}, noise, sections, true);

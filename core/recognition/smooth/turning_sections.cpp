@@ -88,18 +88,22 @@ double typical_variance(const FitData& data, const PatchSpan& patch,
                      : typical;
 }
 
-/// Cuts by the turning of the chords whose squared length exceeds `least_square` * (1 / n + 1 / m),
-/// for means of n and m samples.
-std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<Block>& blocks,
-                                     double least_square) {
-  std::vector<PatchSpan> sections;
-  std::size_t begin = patch.begin;
+/// Where a patch is cut that is travelled from its first block on: each section is as long as its
+/// turn allows. Turns are those of chords whose squared length exceeds `least_square` * (1 / n +
+/// 1 / m), for means of n and m samples.
+std::vector<std::size_t> cuts_of_chords(std::size_t samples, const std::vector<Block>& blocks,
+                                        double least_square) {
+  std::vector<std::size_t> cuts;
+  std::size_t begin = 0;
+  std::size_t at = 0;
   double angle = 0.0;
   double least = 0.0;
   double most = 0.0;
   const Block* last = &blocks.front();
   std::optional<Vec2> before;
   for (const Block& block : blocks) {
+    const std::size_t here = at;
+    at += block.points.size();
     const Vec2 chord = block.mean - last->mean;
     const double of_means = 1.0 / static_cast<double>(block.points.size()) +
                             1.0 / static_cast<double>(last->points.size());
@@ -111,14 +115,40 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
       least = std::min(least, angle);
       most = std::max(most, angle);
     }
-    if (most - least > kLongestTurn && block.points.begin - begin >= kFewestOfSection &&
-        patch.end - block.points.begin >= kFewestOfSection) {
-      sections.push_back({begin, block.points.begin});
-      begin = block.points.begin;
+    if (most - least > kLongestTurn && here - begin >= kFewestOfSection &&
+        samples - here >= kFewestOfSection) {
+      cuts.push_back(here);
+      begin = here;
       angle = least = most = 0.0;
     }
     before = chord;
     last = &block;
+  }
+  return cuts;
+}
+
+/// Cuts half way between where the one and the other direction of travel cut: a path has the same
+/// sections whichever way it is travelled, and none is a short remainder. If one of the two needs
+/// fewer sections, it alone.
+std::vector<PatchSpan> cut_by_chords(const FitData& data, const PatchSpan& patch,
+                                     const std::vector<Block>& blocks, double least_square) {
+  std::vector<std::size_t> cuts = cuts_of_chords(patch.size(), blocks, least_square);
+  std::vector<std::size_t> back =
+      cuts_of_chords(patch.size(), {blocks.rbegin(), blocks.rend()}, least_square);
+  std::reverse(back.begin(), back.end());
+  for (std::size_t& cut : back) {
+    cut = patch.size() - cut;
+  }
+  if (back.size() != cuts.size()) {
+    cuts = back =
+        std::min(cuts, back, [](const auto& a, const auto& b) { return a.size() < b.size(); });
+  }
+  std::vector<PatchSpan> sections;
+  std::size_t begin = patch.begin;
+  for (std::size_t k = 0; k < cuts.size(); ++k) {
+    const std::size_t end = half_way(data, patch.begin + cuts[k], patch.begin + back[k]);
+    sections.push_back({begin, end});
+    begin = end;
   }
   sections.push_back({begin, patch.end});
   return sections;
@@ -126,9 +156,9 @@ std::vector<PatchSpan> cut_by_chords(const PatchSpan& patch, const std::vector<B
 
 /// Cuts at cusps: where the path turns back by more than noise of the variance does. No graph leads
 /// round a cusp, and one sample of the other arm bends a polynomial by more than the noise. The
-/// farthest sample may be of either arm: it is cut out, with the one before it, which shows its
-/// direction. A sample out of order, a spike along the curve, turns the path back twice at once: it
-/// cuts nothing.
+/// farthest sample may be of either arm: it is cut out, with the farther of its neighbours, which
+/// shows its direction and is of the same arm where samples are even. A sample out of order, a
+/// spike along the curve, turns the path back twice at once: it cuts nothing.
 std::vector<std::size_t> cut_at_cusps(const FitData& data, const PatchSpan& patch,
                                       double variance) {
   // Of a thousand samples at one place, noise puts any two ten standard deviations apart once in a
@@ -148,33 +178,50 @@ std::vector<std::size_t> cut_at_cusps(const FitData& data, const PatchSpan& patc
     const bool after_another = k > 0 && turns[k] - turns[k - 1] < kFewestOfSection;
     const bool before_another = k + 1 < turns.size() && turns[k + 1] - turns[k] < kFewestOfSection;
     if (!after_another && !before_another) {
-      cut(turns[k] - 1);
-      cut(turns[k] + 1);
+      const std::size_t middle_of_both = half_way(data, turns[k], turns[k] + 1);
+      cut(middle_of_both - 1);
+      cut(middle_of_both + 1);
     }
   }
   return cuts;
 }
 
 std::vector<Block> blocks_of(const FitData& data, const PatchSpan& patch) {
-  // A block has at least four samples, so that its mean has half of their noise. With 48 blocks a
-  // patch that goes all the way round has seven per radian.
-  constexpr std::size_t kMostBlocks = 48;
+  // A block has at least four samples, so that its mean has half of their noise. With 47 blocks a
+  // patch that goes all the way round has seven per radian. An odd number of them has one in the
+  // middle, and so the same blocks from either end.
+  constexpr std::size_t kMostBlocks = 47;
   const std::size_t n = patch.size();
-  const std::size_t count = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
+  const std::size_t most = std::clamp<std::size_t>(n / 4, 1, kMostBlocks);
+  const std::size_t count = most % 2 == 1 ? most : most - 1;
   std::vector<Block> blocks;
   blocks.reserve(count);
+  const auto before = [&](std::size_t b) {
+    return 2 * b < count ? b * n / count : n - (count - b) * n / count;
+  };
   for (std::size_t b = 0; b < count; ++b) {
-    blocks.push_back(
-        block_of(data, {patch.begin + b * n / count, patch.begin + (b + 1) * n / count}));
+    blocks.push_back(block_of(data, {patch.begin + before(b), patch.begin + before(b + 1)}));
   }
   return blocks;
 }
 
 }  // namespace
 
+std::size_t half_way(const FitData& data, std::size_t a, std::size_t b) {
+  const std::size_t middle = (a + b) / 2;
+  if ((a + b) % 2 == 0) {
+    return middle;
+  }
+  const Vec2& at = data.points[middle].position;
+  return (at - data.points[middle - 1].position).squaredNorm() <
+                 (data.points[middle + 1].position - at).squaredNorm()
+             ? middle + 1
+             : middle;
+}
+
 std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
   const std::vector<Block> blocks = blocks_of(data, patch);
-  std::vector<PatchSpan> sections = cut_by_chords(patch, blocks, 0.0);
+  std::vector<PatchSpan> sections = cut_by_chords(data, patch, blocks, 0.0);
   // A long chord is a sum of short ones and turns no more: a patch that these leave whole stays
   // whole, unless single samples go back.
   if (sections.size() == 1 && cut_at_cusps(data, patch, 0.0).empty()) {
@@ -184,14 +231,14 @@ std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, 
   const double least_square = kFewestDeviations * kFewestDeviations * variance;
   std::vector<std::size_t> ends = cut_at_cusps(data, patch, variance);
   if (ends.empty()) {
-    return sections.size() == 1 ? sections : cut_by_chords(patch, blocks, least_square);
+    return sections.size() == 1 ? sections : cut_by_chords(data, patch, blocks, least_square);
   }
   ends.push_back(patch.end);
   sections.clear();
   std::size_t begin = patch.begin;
   for (const std::size_t end : ends) {
     const PatchSpan arm{begin, end};
-    const auto of_arm = cut_by_chords(arm, blocks_of(data, arm), least_square);
+    const auto of_arm = cut_by_chords(data, arm, blocks_of(data, arm), least_square);
     sections.insert(sections.end(), of_arm.begin(), of_arm.end());
     begin = end;
   }

@@ -1,8 +1,9 @@
-// Sections that are kept from one smoothing to the next.
+// Sections: where patches are cut, and what is kept from one smoothing to the next.
 #include "core/recognition/smooth/patch_sections.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -38,6 +39,38 @@ void expect_same(const SmoothModel& kept, const SmoothModel& anew) {
     EXPECT_LT((a.tangent - b.tangent).norm(), 10.0 * kRounding);
     EXPECT_NEAR(a.inverse_sigma, b.inverse_sigma, 1e-9 * b.inverse_sigma);
   }
+}
+
+std::vector<std::size_t> sizes_of_sections(const FitData& data) {
+  std::vector<std::size_t> sizes;
+  for (const Section& section : sections_of_patches(data, {.known = true})) {
+    sizes.push_back(section.points.size());
+  }
+  return sizes;
+}
+
+TEST(Sections, AreTheSameWhicheverWayAPathIsTravelled) {
+  std::mt19937_64 rng = test::test_rng();
+  int cut = 0;
+  for (const CurveClass curve_class : kCurveClasses) {
+    for (const int samples : {60, 111, 112, 400}) {
+      test::SceneOptions options;
+      options.patches = 1;
+      options.points_per_patch = samples;
+      options.least_fraction = 0.3;
+      options.most_fraction = 1.0;
+      options.sigma_over_size = 1e-4;
+      const test::Scene scene = test::random_scene(curve_class, options, rng);
+      std::vector<StoredPatch> patches = test::stored_patches(scene, scene.sigma_m);
+      const std::vector<std::size_t> along = sizes_of_sections(data_of(patches));
+      std::reverse(patches[0].samples.begin(), patches[0].samples.end());
+      std::vector<std::size_t> against = sizes_of_sections(data_of(patches));
+      std::reverse(against.begin(), against.end());
+      EXPECT_EQ(along, against) << name_of(curve_class) << ' ' << samples;
+      cut += along.size() > 1 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(cut, 16);  // half of them: otherwise the test says little
 }
 
 TEST(KeptSections, OfAnUnchangedPatchAreThoseOfASmoothingInAnotherFrame) {
