@@ -14,6 +14,10 @@
 #include "node/csv/contact_table.h"
 #include "node/files/result.h"
 
+namespace palpate::csv {
+class EmptyCells;
+}
+
 namespace palpate {
 
 /// Seven million samples with all their digits; what is longer is no file of contacts. [bytes]
@@ -21,8 +25,10 @@ inline constexpr std::size_t kMostContactFileBytes = std::size_t{512} << 20;
 
 /// Strict: a file is used as a whole or not at all, and an error reads "FILE:LINE:COLUMN: what is
 /// wrong", with `name` for the file and COLUMN counting bytes from 1. Numbers must be finite, and
-/// within the bounds that the recognizer node sets to messages (node/intake/ingest.h).
-Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name);
+/// within the bounds that the recognizer node sets to messages (node/intake/ingest.h). Where
+/// `empty_cells` is given, the cells are counted there.
+Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name,
+                                       csv::EmptyCells* empty_cells = nullptr);
 
 /// Writes a table so that reading it gives the same values to the last bit: numbers in their
 /// shortest exact form. Optional columns that no row uses are left out.

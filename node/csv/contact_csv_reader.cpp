@@ -10,6 +10,7 @@
 #include "node/csv/contact_csv.h"
 #include "node/csv/csv_columns.h"
 #include "node/csv/decimal_marks.h"
+#include "node/csv/empty_cells.h"
 #include "node/csv/row_detail.h"
 #include "node/csv/text_lines.h"
 #include "node/files/counted.h"
@@ -34,7 +35,8 @@ constexpr double kMostVarianceM2 = kMaxSigmaM * kMaxSigmaM;
 
 class Reader {
  public:
-  Reader(std::string_view text, std::string_view name) : lines_(text, name) {}
+  Reader(std::string_view text, std::string_view name, csv::EmptyCells* empty_cells)
+      : lines_(text, name), empty_cells_(empty_cells) {}
 
   Result<ContactTable> read() {
     bool has_header = false;
@@ -123,6 +125,9 @@ class Reader {
                                 std::string(csv::hint_of_commas(line_, ','))
                           : counted(count, "field") + " instead of " + std::to_string(width_));
       return;
+    }
+    for (std::size_t i = 0; empty_cells_ != nullptr && i < columns_.size(); ++i) {
+      if (columns_[i]) empty_cells_->see(static_cast<Column>(i), fields_[*columns_[i]], lines_);
     }
     ContactRow row;
     const std::string_view probe = field(Column::Probe);
@@ -279,6 +284,7 @@ class Reader {
   using PatchKey = std::tuple<std::size_t, std::uint64_t, std::size_t, std::uint32_t>;
 
   csv::TextLines lines_;
+  csv::EmptyCells* empty_cells_;
   std::string_view line_;
   std::string_view header_;
   std::array<std::string_view, kColumnCount + 1> fields_;
@@ -296,8 +302,9 @@ class Reader {
 
 }  // namespace
 
-Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name) {
-  return Reader(text, name).read();
+Result<ContactTable> parse_contact_csv(std::string_view text, std::string_view name,
+                                       csv::EmptyCells* empty_cells) {
+  return Reader(text, name, empty_cells).read();
 }
 
 }  // namespace palpate

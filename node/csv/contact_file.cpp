@@ -46,9 +46,9 @@ bool is_own_format(std::string_view text) {
 
 Result<csv::PointTable> read_own(std::string_view text, std::string_view name,
                                  const ContactFileOptions& options) {
-  Result<ContactTable> table = parse_contact_csv(text, name);
-  if (!table) return Result<csv::PointTable>::fail(table.error);
   csv::PointTable result;
+  Result<ContactTable> table = parse_contact_csv(text, name, &result.empty_cells);
+  if (!table) return Result<csv::PointTable>::fail(table.error);
   result.table = std::move(*table.value);
   result.has_patches = true;
   for (ContactRow& row : result.table.rows) {
@@ -148,7 +148,11 @@ Read parse_contact_file(std::string_view text, std::string_view name,
                                                           : csv::read_points(text, name, options);
   if (!read) return Read::fail(read.error);
   csv::PointTable& points = *read.value;
+  if (const std::string why = points.empty_cells.error(options); !why.empty()) {
+    return Read::fail(why);
+  }
   ContactFile file{std::move(points.table), std::move(points.notes), points.has_patches};
+  for (std::string& note : points.empty_cells.notes()) file.notes.push_back(std::move(note));
   if (!points.points.empty()) {
     if (const std::string why = counts_instead(points, options); !why.empty()) {
       return Read::fail(std::string(name) + ": " + why);

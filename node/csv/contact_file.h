@@ -53,7 +53,8 @@ struct ContactFile {
 
 /// Reads a file, or standard input for "-". Strict: used as a whole or not at all; an error reads
 /// "FILE:LINE:COLUMN: what is wrong", COLUMN counting bytes from 1; of a row that contradicts its
-/// patch "FILE:LINE: what is wrong", and of all points or the file itself "FILE: what is wrong".
+/// patch "FILE:LINE: what is wrong", and of all points or the file itself "FILE: what is wrong". An
+/// empty cell is an error or a note, see empty_cells.h.
 Result<ContactFile> read_contact_file(const std::string& path, const ContactFileOptions& options);
 
 /// The same from memory; `name` stands for the file in errors.

@@ -76,7 +76,7 @@ class PointReader {
            is_known_ ? "no samples after the header line" : "no samples: the file is empty");
     }
     if (!error_.empty()) return Result<PointTable>::fail(error_);
-    result_.has_patches = columns_.place(Column::Patch).has_value() || seen_.blocks > 1;
+    result_.has_patches = result_.empty_cells.is_used(Column::Patch) || seen_.blocks > 1;
     seen_.has_comma = marks_.comma();
     for (std::string& note : notes_of_points(result_, columns_, options_, seen_)) {
       result_.notes.push_back(std::move(note));
@@ -127,7 +127,8 @@ class PointReader {
 
   /// The line of names again, as when files are joined: another stroke begins.
   void begin_again() {
-    if (columns_.place(Column::Patch)) fail(lines_.line().data(), std::string(kNamesAgain));
+    if (result_.empty_cells.is_used(Column::Patch))
+      fail(lines_.line().data(), std::string(kNamesAgain));
     gap_ = units_may_follow_ = true;
     ++seen_.names_again;
   }
@@ -311,6 +312,10 @@ class PointReader {
         seen_.unnamed_used || std::ranges::any_of(columns_.unnamed, [&](std::size_t place) {
           return !fields_[place].empty();
         });
+    for (std::size_t i = 0; i < columns_.places.size(); ++i) {
+      const auto column = static_cast<Column>(i);
+      if (columns_.place(column)) result_.empty_cells.see(column, field(column), lines_);
+    }
     ContactRow row;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
     int axes = 0;
@@ -341,7 +346,7 @@ class PointReader {
       }
       row.context.tip_radius_m *= by_diameter ? 0.5 : 1.0;
     }
-    const bool has_patches = columns_.place(Column::Patch).has_value();
+    const bool has_patches = result_.empty_cells.is_used(Column::Patch);
     // As gnuplot has it, an empty line begins another stroke.
     if (gap_ && !has_patches && !result_.table.rows.empty()) ++seen_.blocks;
     gap_ = false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "node/csv/contact_file.h"
+#include "node/csv/empty_cells.h"
 #include "node/wire/ingest_limits.h"
 
 namespace palpate::csv {
@@ -22,6 +23,7 @@ struct PointTable {
   bool is_probe_log = false;            ///< every row is a touch
   bool has_patches = false;             ///< the file says where patches end
   bool has_three_without_names = false;  ///< columns
+  EmptyCells empty_cells;
   std::vector<std::string> notes;
 };
 
