@@ -17,18 +17,30 @@ std::string millimetres(double metres) {
   return text;
 }
 
+/// The axes of xy, xz or yz.
+struct NamedPlane {
+  Eigen::Index first;
+  Eigen::Index second;
+
+  std::string name() const {
+    return std::string(kAxes[static_cast<std::size_t>(first)]) +
+           kAxes[static_cast<std::size_t>(second)];
+  }
+};
+
+NamedPlane plane_without(Eigen::Index dropped) {
+  return {dropped == 0 ? 1 : 0, dropped == 2 ? 1 : 2};
+}
+
 PlanePoints without_axis(const std::vector<Eigen::Vector3d>& points, Eigen::Index dropped,
                          double spread_m) {
-  const Eigen::Index first = dropped == 0 ? 1 : 0;
-  const Eigen::Index second = dropped == 2 ? 1 : 2;
+  const NamedPlane plane = plane_without(dropped);
   PlanePoints result;
   for (const Eigen::Vector3d& point : points) {
-    result.points.emplace_back(point[first], point[second]);
+    result.points.emplace_back(point[plane.first], point[plane.second]);
   }
-  result.note = std::string("the plane is ") + kAxes[static_cast<std::size_t>(first)] +
-                kAxes[static_cast<std::size_t>(second)] + "; " +
-                kAxes[static_cast<std::size_t>(dropped)] + " is dropped: it varies by " +
-                millimetres(spread_m);
+  result.note = "the plane is " + plane.name() + "; " + kAxes[static_cast<std::size_t>(dropped)] +
+                " is dropped: it varies by " + millimetres(spread_m);
   return result;
 }
 
@@ -51,11 +63,12 @@ PlanePoints fitted(const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d normal = axes.eigenvectors().col(0);
   Eigen::Index largest = 0;
   normal.cwiseAbs().maxCoeff(&largest);
-  if (normal[largest] < 0.0) normal = -normal;
-  Eigen::Index flattest = 0;
-  normal.cwiseAbs().minCoeff(&flattest);
-  const Eigen::Vector3d u =
-      (Eigen::Vector3d::Unit(flattest) - normal[flattest] * normal).normalized();
+  // Seen from the side from which the nearest of xy, xz and yz is seen: left of the travel
+  // (material_side) is the same in both. xz is seen from below its third axis: x cross z is -y.
+  const NamedPlane nearest = plane_without(largest);
+  const Eigen::Vector3d first = Eigen::Vector3d::Unit(nearest.first);
+  if (normal.dot(first.cross(Eigen::Vector3d::Unit(nearest.second))) < 0.0) normal = -normal;
+  const Eigen::Vector3d u = (first - normal.dot(first) * normal).normalized();
   const Eigen::Vector3d v = normal.cross(u);
   PlanePoints result;
   for (const Eigen::Vector3d& point : points)
@@ -63,11 +76,12 @@ PlanePoints fitted(const std::vector<Eigen::Vector3d>& points) {
   const double rms =
       std::sqrt(std::max(axes.eigenvalues()[0], 0.0) / static_cast<double>(points.size()));
   char text[256];
-  std::snprintf(text, sizeof text,
-                "the plane is fitted: normal (%.6f, %.6f, %.6f), x axis (%.6f, %.6f, %.6f), at %s "
-                "along its normal; the points lie off it by %s rms, which is dropped",
-                normal.x(), normal.y(), normal.z(), u.x(), u.y(), u.z(),
-                millimetres(mean.dot(normal)).c_str(), millimetres(rms).c_str());
+  std::snprintf(
+      text, sizeof text,
+      "the plane is fitted, nearest to %s: normal (%.6f, %.6f, %.6f), x axis (%.6f, %.6f, "
+      "%.6f), at %s along its normal; the points lie off it by %s rms, which is dropped",
+      nearest.name().c_str(), normal.x(), normal.y(), normal.z(), u.x(), u.y(), u.z(),
+      millimetres(mean.dot(normal)).c_str(), millimetres(rms).c_str());
   result.note = text;
   return result;
 }

@@ -15,8 +15,8 @@ struct PlanePoints {
   std::string error;  ///< why there is none; else empty
 };
 
-/// Metres in and out. The fitted plane's axes: the first along the world axis that lies best in it,
-/// the origin at the foot of the world's origin.
+/// Metres in and out. The fitted plane's axes: those of xy, xz or yz, whichever is nearest, turned
+/// into it, so that left and right are the same; the origin at the foot of the world's origin.
 PlanePoints in_plane(const std::vector<Eigen::Vector3d>& points, PointPlane plane);
 
 }  // namespace palpate::csv

@@ -18,8 +18,8 @@ void add_file_flags(CLI::App& command, FileFlags& flags) {
       ->group(group);
   command
       .add_option("--plane", flags.plane,
-                  "Of three coordinates: xy, xz, yz, fit (least squares) or auto (the two along "
-                  "which the points vary)")
+                  "Of three coordinates: xy, xz, yz, fit (least squares, seen as the nearest of "
+                  "these) or auto (the two along which the points vary)")
       ->check(CLI::IsMember({"auto", "xy", "xz", "yz", "fit"}))
       ->capture_default_str()
       ->type_name("PLANE")
