@@ -12,7 +12,8 @@ std::size_t bytes_of(const Moment& moment) {
 std::size_t bytes_of(const ContactGroup& samples) {
   std::size_t bytes = sizeof samples;
   for (const ContactRun& run : samples.runs) {
-    bytes += sizeof run + run.samples.size() * sizeof(ContactSample);
+    bytes += sizeof run + run.samples.size() * sizeof(ContactSample) +
+             run.details.size() * sizeof(SampleDetail);
   }
   return bytes;
 }

@@ -18,33 +18,55 @@ constexpr std::int64_t kNsPerMs = 1'000'000;
 // make it flicker, and shorter than from touch to touch.
 constexpr std::chrono::milliseconds kFollowAfter{250};
 
+template <typename Entry>
+void keep_every_second(std::vector<Entry>& entries) {
+  for (std::size_t i = 0; 2 * i < entries.size(); ++i) entries[i] = entries[2 * i];
+  entries.resize((entries.size() + 1) / 2);
+}
+
 /// Keeps every second sample of every run; of runs with a single sample, the later half of the
 /// runs.
 void thin(LiveGroup& group) {
   std::vector<ContactRun> kept;
   const std::size_t runs = group.touched.runs.size();
+  std::vector<std::size_t> place_of(runs, runs);  // where a run is kept; `runs` = nowhere
   for (std::size_t number = 0; number < runs; ++number) {
     ContactRun& run = group.touched.runs[number];
     if (run.samples.size() == 1 && 2 * number < runs) continue;
-    for (std::size_t i = 0; 2 * i < run.samples.size(); ++i) run.samples[i] = run.samples[2 * i];
-    run.samples.resize((run.samples.size() + 1) / 2);
+    keep_every_second(run.samples);
+    keep_every_second(run.details);
+    place_of[number] = kept.size();
     kept.push_back(std::move(run));
   }
   group.touched.runs = std::move(kept);
-  group.run_of.clear();
+  for (auto& [probe, open] : group.open_runs) open.run = place_of[open.run];
+  std::erase_if(group.open_runs, [&](const auto& open) { return open.second.run == runs; });
   group.samples_kept = 0;
-  for (std::size_t i = 0; i < group.touched.runs.size(); ++i) {
-    const ContactRun& run = group.touched.runs[i];
-    group.run_of[{group.touched.probes[run.context.probe], run.context.patch}] = i;
-    group.samples_kept += run.samples.size();
+  for (const ContactRun& run : group.touched.runs) group.samples_kept += run.samples.size();
+}
+
+SampleDetail detail_of(const v1::ContactSample& sample) {
+  return {Vec2(sample.normal_x(), sample.normal_y()), sample.normal_sigma_rad(),
+          Eigen::Vector3d(sample.cov_xx_m2(), sample.cov_xy_m2(), sample.cov_yy_m2())};
+}
+
+void append(const v1::ContactSample& sample, ContactRun& run) {
+  const SampleDetail detail = detail_of(sample);
+  const bool has_covariance = detail.covariance_m2.x() > 0.0;
+  if (says_more(detail) || !run.details.empty()) {
+    run.details.resize(run.samples.size());
+    run.details.push_back(detail);
   }
+  run.samples.push_back({{sample.x_m(), sample.y_m()},
+                         has_covariance ? mean_sigma_m(detail.covariance_m2) : sample.sigma_m(),
+                         sample.stamp_ns()});
 }
 
 /// False for a batch with invalid names or numbers: it is not ours to draw.
 bool is_drawable(const v1::ContactBatch& batch) {
   const auto is_finite = [](const v1::ContactSample& sample) {
     return std::isfinite(sample.x_m()) && std::isfinite(sample.y_m()) &&
-           std::isfinite(sample.sigma_m());
+           std::isfinite(sample.sigma_m()) && is_sound(detail_of(sample));
   };
   return is_valid_name(batch.header().source()) &&
          (batch.group().empty() || is_valid_name(batch.group())) &&
@@ -132,6 +154,7 @@ LiveGroup LiveState::group_at(const Moment& moment) const {
   runs.resize(std::min(runs.size(), moment.counts.size()));
   for (std::size_t i = 0; i < runs.size(); ++i) {
     runs[i].samples.resize(std::min<std::size_t>(runs[i].samples.size(), moment.counts[i]));
+    runs[i].details.resize(std::min(runs[i].details.size(), runs[i].samples.size()));
     then.samples_kept += runs[i].samples.size();
   }
   then.samples_received = moment.samples_received;
@@ -154,7 +177,7 @@ void LiveState::begin_object(LiveGroup& group, std::uint64_t object) {
   group.touched.object = object;
   group.touched.probes.clear();
   group.touched.runs.clear();
-  group.run_of.clear();
+  group.open_runs.clear();
   group.samples_received = 0;
   group.samples_kept = 0;
   group.answer.Clear();
@@ -167,29 +190,39 @@ void LiveState::place_origin(LiveGroup& group, const Vec2& first) {
   if (group.samples_kept == 0 && !group.has_answer) group.origin_m = first;
 }
 
+/// The stroke that a batch continues, or a new one, as the node sees it: a patch number that comes
+/// again after another is of a new touch.
+ContactRun& LiveState::run_of(LiveGroup& group, const v1::ContactBatch& batch) {
+  const std::string& probe = batch.header().source();
+  auto& probes = group.touched.probes;
+  auto& runs = group.touched.runs;
+  const auto known = std::find(probes.begin(), probes.end(), probe);
+  const PatchContext context = {
+      static_cast<std::uint32_t>(known - probes.begin()), batch.patch(), batch.tip_radius_m(),
+      from_wire(batch.material_side()).value_or(MaterialSide::Unspecified)};
+  if (known == probes.end()) probes.push_back(probe);
+  const auto open = group.open_runs.find(probe);
+  if (open != group.open_runs.end() && open->second.epoch == batch.header().epoch()) {
+    ContactRun& run = runs[open->second.run];
+    if (is_of_one_stroke(run.context, context)) {
+      run.context = continued(run.context, context);
+      return run;
+    }
+  }
+  group.open_runs[probe] = {runs.size(), batch.header().epoch()};
+  runs.push_back({context, {}, {}});
+  return runs.back();
+}
+
 void LiveState::take(const v1::ContactBatch& batch, SteadyTime now) {
   if (!is_drawable(batch)) return;
   const std::string& probe = batch.header().source();
   LiveGroup& live = group(batch.group().empty() ? probe : batch.group(), now);
   if (!live.has_object || live.touched.object != batch.object()) begin_object(live, batch.object());
   place_origin(live, {batch.samples(0).x_m(), batch.samples(0).y_m()});
-  const auto [found, is_new] =
-      live.run_of.try_emplace({probe, batch.patch()}, live.touched.runs.size());
-  if (is_new) {
-    auto& probes = live.touched.probes;
-    const auto known = std::find(probes.begin(), probes.end(), probe);
-    const auto number = static_cast<std::uint32_t>(known - probes.begin());
-    if (known == probes.end()) probes.push_back(probe);
-    live.touched.runs.push_back(
-        {{number, batch.patch(), batch.tip_radius_m(),
-          from_wire(batch.material_side()).value_or(MaterialSide::Unspecified)},
-         {}});
-  }
   live.last_touched = now;
-  ContactRun& run = live.touched.runs[found->second];
-  for (const v1::ContactSample& sample : batch.samples()) {
-    run.samples.push_back({{sample.x_m(), sample.y_m()}, sample.sigma_m(), sample.stamp_ns()});
-  }
+  ContactRun& run = run_of(live, batch);
+  for (const v1::ContactSample& sample : batch.samples()) append(sample, run);
   const auto count = static_cast<std::size_t>(batch.samples_size());
   live.samples_received += count;
   live.samples_kept += count;

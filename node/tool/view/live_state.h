@@ -18,8 +18,8 @@
 
 namespace palpate {
 
-/// Samples kept of one group's object, 32 bytes each. If there are more, every second one is
-/// dropped, and the page says how many are shown.
+/// Samples kept of one group's object, 32 bytes each (80 with normals or covariances). If there are
+/// more, every second one is dropped, and the page says how many are shown.
 inline constexpr std::size_t kMostSamplesKept = 20000;
 /// Groups kept; as many as a recognizer has by default. The one silent for longest is replaced.
 inline constexpr std::size_t kMostGroupsKept = 64;
@@ -28,7 +28,7 @@ inline constexpr int kMostProbesShown = 256;
 inline constexpr std::size_t kMostNodesKept = 8;
 
 struct LiveGroup {
-  /// Contacts of the present object, one run per probe and patch.
+  /// Contacts of the present object, a run for each stroke.
   ContactGroup touched;
   std::uint64_t samples_received = 0;
   std::size_t samples_kept = 0;
@@ -54,7 +54,12 @@ struct LiveGroup {
   std::uint64_t previous_object = 0;
   bool has_previous_object = false;
   bool has_object = false;
-  std::map<std::pair<std::string, std::uint32_t>, std::size_t> run_of;  // by probe and patch
+  /// The stroke of each probe that its next samples continue if nothing tells of another.
+  struct OpenRun {
+    std::size_t run = 0;
+    std::uint64_t epoch = 0;
+  };
+  std::map<std::string, OpenRun, std::less<>> open_runs;
 };
 
 struct LiveNode {
@@ -91,6 +96,7 @@ class LiveState {
   void keep_moment(LiveGroup& group);
   void seal_era(LiveGroup& group);
   void place_origin(LiveGroup& group, const Vec2& first);
+  static ContactRun& run_of(LiveGroup& group, const v1::ContactBatch& batch);
 
   std::map<std::string, LiveGroup, std::less<>> groups_;
   std::map<std::string, LiveNode, std::less<>> nodes_;
