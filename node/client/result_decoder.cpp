@@ -6,6 +6,18 @@
 #include "node/wire/topics.h"
 
 namespace palpate::client {
+namespace {
+
+/// An empty source is the topic's (header.proto), which whoever gets the message does not see.
+template <typename Message>
+void complete_source(std::string_view topic_name, Message& message) {
+  if (message.has_header() && message.header().source().empty()) {
+    message.mutable_header()->set_source(std::string(topic_name));
+  }
+}
+
+}  // namespace
+
 /// The message's topic; nullptr if the message is not to be used.
 template <typename Message>
 ResultDecoder::Feed* ResultDecoder::take_fresh(const Message& message, std::string_view topic,
@@ -40,8 +52,10 @@ ReceivedResult ResultDecoder::take(std::string_view text, std::string_view paylo
   } else if (topic && topic->kind == TopicKind::Estimate && parse(estimate_, payload)) {
     if (take_fresh(estimate_, text, now) != nullptr) result.estimate = &estimate_;
   } else if (topic && topic->kind == TopicKind::Status && parse(status_, payload)) {
+    complete_source(topic->name, status_);
     if (take_fresh(status_, text, now) != nullptr) result.status = &status_;
   } else if (topic && topic->kind == TopicKind::Contact && parse(contact_, payload)) {
+    complete_source(topic->name, contact_);
     if (take_fresh(contact_, text, now) != nullptr) result.contact = &contact_;
   } else {
     count_malformed();

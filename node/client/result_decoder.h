@@ -19,7 +19,8 @@
 namespace palpate::client {
 
 /// What one receive returned: at most one pointer is set, valid until the next call; none is set
-/// after a timeout.
+/// after a timeout. The source of a contact or status is the topic's where its sender left it
+/// empty.
 struct ReceivedResult {
   const v1::Recognition* recognition = nullptr;
   const v1::LocalEstimate* estimate = nullptr;

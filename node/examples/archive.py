@@ -55,7 +55,10 @@ def batches_of_recording(path):
             continue
         at += head.size + topic + payload
         if frames == 2 and body.startswith(b"contact/"):
-            yield contact_pb2.ContactBatch.FromString(body[topic:])
+            batch = contact_pb2.ContactBatch.FromString(body[topic:])
+            if not batch.header.source:  # it is the topic's then (header.proto)
+                batch.header.source = body[len(b"contact/"):topic].decode().rstrip("/")
+            yield batch
 
 
 def batches_of_json_lines(path):

@@ -52,6 +52,8 @@ def write_recording(path, count, seed):
     with open(path, "wb") as file:
         file.write(b"palpate2")
         for batch in batches(count, seed):
+            # Who leaves source and group empty is named by the topic.
+            batch.header.source = batch.group = ""
             topic, payload = b"contact/finger/", batch.SerializeToString()
             fields = struct.pack("<qIII", 0, 2, len(topic), len(payload))
             file.write(b"\xa7rec" + fields + struct.pack("<I", zlib.crc32(topic + payload, zlib.crc32(fields))) + topic + payload)
@@ -87,6 +89,7 @@ class Archive(unittest.TestCase):
             self.assertEqual(len({(row["file"], row["group"], row["object"]) for row in rows}), len(rows))
             self.assertGreater(sum(row["curve_class"] == "circle" for row in rows), 0.9 * len(rows))
             self.assertEqual({row["samples"] for row in rows}, {"30"})
+            self.assertEqual({row["group"] for row in rows if row["file"].endswith("night.recording")}, {"finger"})
 
             # In another order; a worker is killed, then the one who deals out the work, which is begun again.
             broken = self.start(folder, "broken.csv", files[::-1])

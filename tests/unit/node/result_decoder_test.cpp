@@ -61,5 +61,20 @@ TEST_F(ManyTopics, WhatCannotBeReadTakesNoGroupsPlace) {
   EXPECT_EQ(decoder_.counters().over_bound, 0U);
 }
 
+TEST(ResultDecoder, AnEmptySourceIsTheTopics) {
+  ResultDecoder decoder(10);
+  v1::ContactBatch batch;
+  batch.mutable_header()->set_epoch(1);
+  const std::string topic = make_topic(TopicKind::Contact, "finger");
+  ReceivedResult result = decoder.take(topic, batch.SerializeAsString());
+  ASSERT_NE(result.contact, nullptr);
+  EXPECT_EQ(result.contact->header().source(), "finger");
+  v1::NodeStatus status;
+  status.mutable_header()->set_epoch(1);
+  result = decoder.take(make_topic(TopicKind::Status, "node"), status.SerializeAsString());
+  ASSERT_NE(result.status, nullptr);
+  EXPECT_EQ(result.status->header().source(), "node");
+}
+
 }  // namespace
 }  // namespace palpate::client
