@@ -16,13 +16,6 @@
 namespace palpate {
 namespace {
 
-/// Mean square root of the standard deviations that its samples state, 0 where none does. [m]
-double stated_sigma(const CheckedPatch& patch) {
-  return patch.with_sigma > 0
-             ? std::sqrt(patch.sigma_squares / static_cast<double>(patch.with_sigma))
-             : 0.0;
-}
-
 std::vector<double> spacings(const std::vector<Vec2>& positions) {
   std::vector<double> result;
   for (std::size_t i = 1; i < positions.size(); ++i) {
@@ -85,7 +78,7 @@ void see_noise(const CheckedPatch& patch, const NoiseEstimate& noise, SeenInPatc
   if (noise.status != LocalStatus::Ok || noise.dof <= 20 || patch.with_sigma == 0) {
     return;
   }
-  const double stated = stated_sigma(patch);
+  const double stated = patch.stated_sigma_m();
   const double ratio = std::max(noise.sigma_m / stated, stated / noise.sigma_m);
   if (ratio > seen->noise_ratio) {
     seen->noise_ratio = ratio;
@@ -97,7 +90,7 @@ void see_noise(const CheckedPatch& patch, const NoiseEstimate& noise, SeenInPatc
 void see_patch(const CheckedPatch& patch, double extent_of_all, SeenInPatches* seen) {
   seen->longest = std::max(seen->longest, patch.positions.size());
   seen->samples += patch.positions.size();
-  seen->largest_stated = std::max(seen->largest_stated, stated_sigma(patch));
+  seen->largest_stated = std::max(seen->largest_stated, patch.stated_sigma_m());
   if (patch.positions.size() < 2) {
     return;
   }
@@ -248,17 +241,18 @@ class PatchFindings {
   /// Whether the stated noise is that of the samples.
   void judge_noise() const {
     constexpr double kNoiseOff = 2.0;
+    const std::string what =
+        cure_of(source_, "sigma_m says ", "the stated noise is ", "sigma is ") +
+        text_of_length(seen_.stated_noise) + ", the samples scatter by " +
+        text_of_length(seen_.estimated_noise);
     if (seen_.noise_ratio > kNoiseOff) {
-      add(Severity::Warning,
-          "sigma_m says " + text_of_length(seen_.stated_noise) + ", the samples scatter by " +
-              text_of_length(seen_.estimated_noise),
+      add(Severity::Warning, what,
           "state the noise as it is, or 0 to have it estimated: covariances and classes depend on "
           "it");
+      // Of a noise that is stated too large the answer is doubtful more often, not wrong.
+      findings_->back().spoils_answer = seen_.stated_noise < seen_.estimated_noise;
     } else if (seen_.noise_ratio > 0.0) {
-      add(Severity::Note,
-          "sigma_m says " + text_of_length(seen_.stated_noise) + ", the samples scatter by " +
-              text_of_length(seen_.estimated_noise),
-          "as it should be");
+      add(Severity::Note, what, "as it should be");
     }
   }
 
@@ -294,12 +288,16 @@ class PatchFindings {
 
 void CheckedPatch::take(const Vec2& position_m, double sigma_m, const SampleDetail* detail) {
   if (detail != nullptr) {
-    normals.resize(positions.size(), Vec2::Zero());
-    normals.push_back(detail->normal);
+    normals.resize(positions.size());
+    normals.push_back({detail->normal, detail->normal_sigma_rad});
   }
   positions.push_back(position_m);
   sigma_squares += sigma_m * sigma_m;
   with_sigma += sigma_m > 0.0 ? 1 : 0;
+}
+
+double CheckedPatch::stated_sigma_m() const {
+  return with_sigma > 0 ? std::sqrt(sigma_squares / static_cast<double>(with_sigma)) : 0.0;
 }
 
 void judge_patches(const std::string& probe, const std::vector<CheckedPatch>& patches,

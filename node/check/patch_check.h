@@ -24,6 +24,11 @@ struct Finding {
   bool has_no_order = false;  ///< rows of a stroke lead to and fro instead of along the part
 };
 
+struct CheckedNormal {
+  Vec2 normal = Vec2::Zero();  ///< zero = not measured
+  double sigma_rad = 0.0;      ///< as stated
+};
+
 /// What is kept of a patch for judgement.
 struct CheckedPatch {
   std::uint32_t number = 0;
@@ -31,12 +36,15 @@ struct CheckedPatch {
   double tip_radius_m = 0.0;
   MaterialSide material_side = MaterialSide::Unspecified;
   std::vector<Vec2> positions = {};
-  std::vector<Vec2> normals = {};  ///< by position, zero where none; empty where there are none
+  std::vector<CheckedNormal> normals = {};  ///< by position; empty where there are none
   double sigma_squares = 0.0;
   std::size_t with_sigma = 0;
 
   /// `detail`: nullptr where the sample says no more.
   void take(const Vec2& position_m, double sigma_m, const SampleDetail* detail);
+
+  /// Root mean square of the standard deviations that its samples state, 0 where none does. [m]
+  double stated_sigma_m() const;
 };
 
 /// Where patches came from, or rather who is told: the cures differ.

@@ -173,9 +173,13 @@ class Fit(unittest.TestCase):
     def test_sigma_is_used_where_the_file_has_none(self):
         text = "".join(line.rsplit(",", 2)[0] + "\n"
                        for line in (HEADER + ellipse()).splitlines())
-        for given in (1e-5, 4e-5):
+        for given in (1.5e-5, 4e-5):
             answers, _ = self.answers("--sigma", given, "-", text_in=text)
             self.assertAlmostEqual(answers[0].sigma_m / given, 1.0)
+        code, out, err = run(TOOL, "fit", "--format", "text", "--sigma", 2e-7, "-", text_in=text)
+        self.assertEqual(code, 0)
+        for told in (out, err):
+            self.assertRegex(told, r"WARNING: .*the stated noise is 0\.2 um, the samples scatter by (19|2\d)\.\d+ um")
         estimated, _ = self.answers("-", text_in=text)
         self.assertLess(abs(estimated[0].sigma_m / SIGMA - 1), 5 / math.sqrt(2 * 217))
 

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -132,6 +133,32 @@ TEST(StreamCheck, NormalsAreSeenBesideTheTravel) {
                   Severity::Error, "REJECT_REASON_COVARIANCE"));
 }
 
+TEST(StreamCheck, NormalsThatAreFurtherOffThanTheyStateAreNotAsTheyShouldBe) {
+  const auto findings = findings_of(with_normals(0.3));  // of a stated 0.01 rad
+  EXPECT_TRUE(has(findings, Severity::Warning, "half of 200 measured normals are more than 17"));
+  EXPECT_TRUE(has(findings, Severity::Warning, "they state a deviation of 0.57 degrees"));
+  EXPECT_FALSE(has(findings, Severity::Note, "measured normals"));
+}
+
+TEST(StreamCheck, NormalsOfNeighboursThatAreOpposedAreSeen) {
+  const auto with_every_turned_over = [](std::size_t one_of) {
+    return [one_of](std::size_t number, v1::ContactBatch& batch) {
+      with_normals(0.0)(number, batch);
+      batch.set_material_side(v1::MATERIAL_SIDE_UNSPECIFIED);
+      for (int i = 0; i < batch.samples_size(); ++i) {
+        v1::ContactSample& sample = *batch.mutable_samples(i);
+        if ((10 * number + static_cast<std::size_t>(i)) % one_of != one_of - 1) continue;
+        sample.set_normal_x(-sample.normal_x());
+        sample.set_normal_y(-sample.normal_y());
+      }
+    };
+  };
+  EXPECT_TRUE(has(findings_of(with_every_turned_over(2)), Severity::Error,
+                  "of 200 measured normals, 199 pairs of neighbours point to opposite sides"));
+  EXPECT_TRUE(has(findings_of(with_every_turned_over(150)), Severity::Warning,
+                  "2 pairs of neighbours point to opposite sides"));
+}
+
 TEST(StreamCheck, MillimetresAreSuspected) {
   const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
     for (v1::ContactSample& sample : *batch.mutable_samples()) {
@@ -201,12 +228,21 @@ TEST(StreamCheck, AProbeThatStandsStillDoesNotJumpAfterwards) {
 }
 
 TEST(StreamCheck, NoiseThatIsNotAsStatedIsTold) {
-  const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
-    for (v1::ContactSample& sample : *batch.mutable_samples()) {
-      sample.set_sigma_m(1e-7);
-    }
-  });
-  EXPECT_TRUE(has(findings, Severity::Warning, "the samples scatter by"));
+  const auto stated = [](double sigma_m) {
+    const auto findings = findings_of([=](std::size_t, v1::ContactBatch& batch) {
+      for (v1::ContactSample& sample : *batch.mutable_samples()) sample.set_sigma_m(sigma_m);
+    });
+    const auto told = std::find_if(findings.begin(), findings.end(), [](const Finding& finding) {
+      return finding.what.find("the samples scatter by") != std::string::npos;
+    });
+    EXPECT_NE(told, findings.end());
+    return told == findings.end() ? Finding() : *told;
+  };
+  EXPECT_EQ(stated(1e-7).severity, Severity::Warning);
+  EXPECT_TRUE(stated(1e-7).spoils_answer);
+  // Too large a noise makes answers doubtful, not wrong.
+  EXPECT_EQ(stated(1e-4).severity, Severity::Warning);
+  EXPECT_FALSE(stated(1e-4).spoils_answer);
 }
 
 TEST(StreamCheck, GapsInSeqAreCounted) {
