@@ -94,8 +94,9 @@ std::optional<Finding> judge_approaches(const ContactGroup& group, bool is_alone
   all.insert(left_out.begin(), left_out.end());
   const std::vector<std::size_t> numbers(all.begin(), all.end());
   const std::string cure =
-      source != CheckedSource::File ? "leave these samples out"
-      : is_alone                    ? "leave it out: fit --leave-out " + ranges_of(numbers)
+      source == CheckedSource::Stream   ? "publish samples in contact alone"
+      : source == CheckedSource::Arrays ? "leave these samples out"
+      : is_alone                        ? "leave it out: fit --leave-out " + ranges_of(numbers)
                  : "take its rows out of the file (samples are numbered within their group and "
                    "object)";
   return Finding{Severity::Warning, "",

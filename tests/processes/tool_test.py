@@ -206,6 +206,11 @@ class Tool(unittest.TestCase):
             code, out = check(line + [f"p,0,{1 + 0.001 * i},0\n" for i in range(60)])
             self.assertEqual(code, 1)
             self.assertIn("count patch up by one", out)
+            # What the socket drops leaves no other trace.
+            code, _, err = run(TOOL, "check", "--contacts", bus.contacts, "--seconds", "0.2")
+            self.assertEqual(code, 1)
+            self.assertIn("no message came: does the probe connect to", err)
+            self.assertIn("A message of more than 65536 bytes does not arrive", err)
 
 
 if __name__ == "__main__":

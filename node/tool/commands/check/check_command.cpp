@@ -19,6 +19,7 @@
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/commands/listening_place.h"
 #include "node/tool/contact_groups.h"
+#include "node/wire/ingest_limits.h"
 
 namespace palpate {
 namespace {
@@ -115,7 +116,9 @@ int run(const CheckCommand& command) {
   }
   if (check.messages() == 0) {
     return complain("no message came: does the probe connect to " + command.place.endpoint +
-                        " with a PUB socket?",
+                        " with a PUB socket? A message of more than " +
+                        std::to_string(IngestLimits{}.max_message_bytes) +
+                        " bytes does not arrive: split longer strokes (contact.proto)",
                     kFailed);
   }
   return print(check.findings());

@@ -1,7 +1,10 @@
 #include "node/tool/commands/check/stream_check.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
+#include "node/check/approach_check.h"
 #include "node/files/counted.h"
 #include "node/security/decode_from.h"
 
@@ -58,6 +61,27 @@ std::string cure_of(v1::RejectReason reason) {
   }
 }
 
+/// As of a file: of each object's strokes.
+void add_approaches(const std::string& probe, const std::vector<CheckedPatch>& patches,
+                    std::vector<Finding>* findings) {
+  std::map<std::uint64_t, ContactGroup> objects;
+  for (const CheckedPatch& patch : patches) {
+    ContactGroup& group = objects[patch.object];
+    group.probes = {probe};
+    ContactRun run;
+    run.context.patch = patch.number;
+    for (const Vec2& position : patch.positions) run.samples.push_back({position});
+    group.runs.push_back(std::move(run));
+  }
+  for (const auto& [object, group] : objects) {
+    auto found = judge_approaches(group, objects.size() == 1, {}, CheckedSource::Stream);
+    if (!found) continue;
+    found->probe = probe;
+    findings->push_back(*std::move(found));
+    return;  // said once
+  }
+}
+
 }  // namespace
 
 void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::string_view payload,
@@ -82,6 +106,12 @@ void StreamCheck::take(std::size_t frame_count, std::string_view topic, std::str
   }
   ++probe.messages;
   probe.samples += message.samples.size();
+  if (probe.patches.empty() || probe.patches.back().object != message.object) {
+    ++probe.objects;
+    probe.samples_of_object = 0;
+  }
+  probe.samples_of_object += message.samples.size();
+  probe.longest_object_samples = std::max(probe.longest_object_samples, probe.samples_of_object);
   const bool is_new_patch = probe.patches.empty() || probe.patches.back().number != message.patch ||
                             probe.patches.back().object != message.object;
   if (is_new_patch) {
@@ -139,7 +169,19 @@ std::vector<Finding> StreamCheck::findings() const {
           counted(probe.sequence.gaps(), "gap") + " in seq, " +
               counted(probe.sequence.missing(), "message") + " lost",
           "count seq up by one a message from 0; raise the high-water mark where messages are "
-          "dropped");
+          "dropped; split what is longer than " +
+              std::to_string(IngestLimits{}.max_message_bytes) + " bytes: it does not arrive");
+    }
+    constexpr std::uint64_t kFewObjects = 2;  // two parts that were touched in turn
+    if (probe.objects > kFewObjects && 2 * probe.objects > probe.messages) {
+      findings.push_back(
+          {Severity::Warning, name,
+           "object changes with nearly every message: " + counted(probe.objects, "object") +
+               " in " + counted(probe.messages, "message") + ", of at most " +
+               counted(probe.longest_object_samples, "sample"),
+           "object is the number of the part: another one makes the recognizer forget all samples; "
+           "keep it until the next part",
+           true});
     }
     if (probe.stamps_missing > 0) {
       add(Severity::Warning, counted(probe.stamps_missing, "sample") + " without stamp_ns",
@@ -165,6 +207,7 @@ std::vector<Finding> StreamCheck::findings() const {
           "stamp_ns is Unix time in nanoseconds, not time since the start");
     }
     judge_patches(name, probe.patches, CheckedSource::Stream, &findings);
+    add_approaches(name, probe.patches, &findings);
   }
   sort_findings(&findings);
   return findings;

@@ -40,7 +40,10 @@ class StreamCheck {
     std::int64_t last_stamp_ns = 0;
     std::int64_t largest_delay_ns = 0;
     std::uint64_t patch_count = 0;
-    std::vector<CheckedPatch> patches;  ///< the latest
+    std::uint64_t objects = 0;  ///< how often another one began, the first included
+    std::uint64_t longest_object_samples = 0;
+    std::uint64_t samples_of_object = 0;  ///< of the latest
+    std::vector<CheckedPatch> patches;    ///< the latest
   };
 
   ContactDecoder decoder_;

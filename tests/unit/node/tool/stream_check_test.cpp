@@ -159,6 +159,32 @@ TEST(StreamCheck, NormalsOfNeighboursThatAreOpposedAreSeen) {
                   "2 pairs of neighbours point to opposite sides"));
 }
 
+TEST(StreamCheck, AnObjectForEachMessageIsTold) {
+  const auto counted_up = [](std::size_t messages) {
+    return findings_of(
+        [=](std::size_t number, v1::ContactBatch& batch) { batch.set_object(number / messages); });
+  };
+  EXPECT_TRUE(has(counted_up(1), Severity::Warning,
+                  "nearly every message: 20 objects in 20 messages, of at most 10 samples"));
+  EXPECT_FALSE(has(counted_up(5), Severity::Warning, "object changes"));
+}
+
+TEST(StreamCheck, AnApproachThroughTheAirIsToldAsOfAFile) {
+  // From beside the circle straight to it, at a right angle.
+  const auto findings = findings_of([](std::size_t number, v1::ContactBatch& batch) {
+    for (int i = 0; i < batch.samples_size(); ++i) {
+      const double step = 10.0 * static_cast<double>(number) + i - 20.0;
+      v1::ContactSample& sample = *batch.mutable_samples(i);
+      const double noise = i % 2 == 0 ? 1e-6 : -1e-6;
+      sample.set_x_m((step < 0.0 ? 0.02 - 2e-4 * step : 0.02 * std::cos(0.01 * step)) + noise);
+      sample.set_y_m((step < 0.0 ? 0.0 : 0.02 * std::sin(0.01 * step)) - noise);
+    }
+  });
+  EXPECT_TRUE(has(findings, Severity::Warning, "1 stroke runs straight at an end"));
+  EXPECT_FALSE(has(findings_of([](std::size_t, v1::ContactBatch&) {}), Severity::Warning,
+                   "straight at an end"));
+}
+
 TEST(StreamCheck, MillimetresAreSuspected) {
   const auto findings = findings_of([](std::size_t, v1::ContactBatch& batch) {
     for (v1::ContactSample& sample : *batch.mutable_samples()) {
