@@ -31,7 +31,8 @@ class CurveModel:
     The last four are NaN if there is no curve.
     rival: params of another curve of the class, beyond the covariance, that may be the true one as well (through four points go two
     parabolas); None if the points exclude every other one.
-    bounded: False if the shape runs to the end of its class, or out of sight, within three standard deviations.
+    bounded: False if the shape runs to the end of its class, or out of sight, within three standard deviations: whatever
+    covariance says, the points do not bound it.
     min_samples: fewest points that determine a curve of the class."""
     curve_class: ClassVar[str]
     min_samples: ClassVar[int]
@@ -50,7 +51,9 @@ class CurveModel:
         self.bounded = True
 
     def estimate(self, data, sigma=None, normals=None, normal_sigma=None, covariances=None) -> bool:
-        """Fits the curve to points. Returns True if they determine one curve of the class.
+        """Fits the curve to points. Returns True if there is a fit, which is then in params: as of scikit-image's models, no more.
+        Whether the points exclude every other curve of the class is said by `rival` (None = they do), and whether they
+        bound its shape by `bounded`. Look at both before you rely on params and covariance.
 
         data: an array (n, 2) of touches in any order, or a list of such arrays: each is a patch, one unbroken touch with its points in
         their order along the part. palpate fit --class takes the patches of a file so. Order tells much about cubics: where two arms
