@@ -4,7 +4,9 @@ namespace palpate {
 namespace {
 
 constexpr char kDisagreeOnCurve[] =
-    "and we do not agree on CURVE: one of us has keys, the other none";
+    "and we do not agree on CURVE: one of us has keys and the other none, or the server key that "
+    "we were "
+    "given is not its own";
 
 std::string text_of(const SocketEvent& told) {
   if (told.event == ZMQ_EVENT_HANDSHAKE_FAILED_AUTH) {

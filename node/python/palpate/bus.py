@@ -129,7 +129,8 @@ class _Peer:
 
     def _hear(self, event: int) -> None:
         closed_in_a_row = 8  # a peer that starts or ends at that moment closes one or two
-        why = "and we do not agree on CURVE: one of us has keys, the other none"
+        why = ("and we do not agree on CURVE: one of us has keys and the other none, "
+               "or the server key that we were given is not its own")
         if event == zmq.EVENT_HANDSHAKE_SUCCEEDED:
             self._closed_in_a_row = 0
             return

@@ -10,6 +10,9 @@
 
 namespace palpate {
 
+/// Maximum of browsers that look on, each by a live feed: a socket and the last message.
+inline constexpr long kMostViewers = 64;
+
 /// Shows what arrives on the bus in browsers until `stop_fd` is readable. Calls `on_bound` with the
 /// port. Throws std::invalid_argument if it cannot subscribe and boost::system::system_error if it
 /// cannot listen.

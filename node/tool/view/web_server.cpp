@@ -8,6 +8,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 
 #include "node/tool/view/downloads.h"
+#include "node/tool/view/live_view.h"
 #include "node/tool/view/page_files.h"
 
 namespace palpate {
@@ -23,8 +24,6 @@ using namespace std::chrono_literals;
 constexpr long kMostHttpConnections = 128;
 constexpr auto kRequestTime = 5s;
 constexpr std::uint32_t kMostHeaderBytes = 8192;
-// Maximum of live feeds; each is a socket and the last message.
-constexpr long kMostViewers = 64;
 // How often viewers are checked: half the interval of pictures.
 constexpr auto kTick = 15ms;
 

@@ -2,6 +2,7 @@
 #include <boost/system/system_error.hpp>
 #include <iostream>
 #include <memory>
+#include <string>
 
 #include "node/client/result_subscriber.h"
 #include "node/process/stop_signals.h"
@@ -61,7 +62,8 @@ void add_view_command(CLI::App& app, int& exit_code) {
       app.add_subcommand("view",
                          "Show touch and recognition live in a browser: points, curve, 95 % band, "
                          "rivals, what to do next,\n"
-                         "probes. Prints the page's address; any number of browsers may look on.");
+                         "probes. Prints the page's address; up to " +
+                             std::to_string(kMostViewers) + " browsers may look on.");
   add_connection_flags(*command, "--results", "The recognizer's results endpoint",
                        view->connection);
   command->add_option("--listen", view->listen, "Address and port of the page; port 0 = any")
