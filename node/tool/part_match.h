@@ -23,6 +23,7 @@ v1::PartMatch match_part(const ContactGroup& group, const ClosedSpline& part,
                          const SegmentMatchOptions& options);
 
 /// A text of several lines for a person to read; each line ends with a line feed.
-std::string part_match_text(const v1::PartMatch& match);
+/// `noise_is_stated`: by whoever touched, of every sample; else the text says what was assumed.
+std::string part_match_text(const v1::PartMatch& match, bool noise_is_stated);
 
 }  // namespace palpate

@@ -91,8 +91,12 @@ void add_joints(const v1::PatchJoints& patch, std::string& text) {
 
 }  // namespace
 
-std::string part_match_text(const v1::PartMatch& match) {
+std::string part_match_text(const v1::PartMatch& match, bool noise_is_stated) {
   std::string text = verdict(match) + "\n";
+  if (!noise_is_stated && match.placements_size() > 0) {
+    text += "  noise        sigma " + text_of_length(match.sigma_m()) +
+            ", estimated: +- counts white noise alone, a probe's drift or lobes are not in it\n";
+  }
   for (int p = 0; p < match.placements_size(); ++p) {
     const v1::PartPlacement& placement = match.placements(p);
     const LengthUnit unit = length_unit_for(placement.slide_sd_m());

@@ -31,7 +31,7 @@ int place_part(const std::string& part_file, const std::vector<FitInput>& inputs
       std::cout << json_line(match);
     } else {
       std::cout << separator << printable_path(group.file) << ", " << group.name << ": "
-                << part_match_text(match);
+                << part_match_text(match, options.sigma_m > 0.0 || input.noise_is_known);
       separator = "\n";
     }
   }

@@ -90,6 +90,15 @@ class Part(unittest.TestCase):
                               r"beyond a joint: samples 120-200\n")
         self.assertRegex(out, r"part         x (300\.0|299\.9)\d+ \+- 0\.\d+ mm, y ")
 
+    def test_text_says_what_is_not_in_the_deviations_where_no_noise_is_stated(self):
+        told = "estimated: +- counts white noise alone, a probe's drift or lobes are not in it\n"
+        rows = stroke(0, 1.4025, 2.4025, 201)
+        unstated = "probe,patch,x_m,y_m\n" + "".join(row.rsplit(",", 1)[0] + "\n" for row in rows.splitlines())
+        for text, options, is_told in ((HEADER + rows, (), False), (unstated, (), True), (unstated, ("--sigma", SIGMA), False)):
+            code, out, err = run(TOOL, "fit", "--format", "text", "--part", self.model, self.write("part.csv", text), *options)
+            self.assertEqual((code, err), (0, ""))
+            self.assertEqual(told in out, is_told, out)
+
     def touches(self, count):
         """Rows x,y of single touches all round the part, in no order."""
         rng = random.Random(count)
