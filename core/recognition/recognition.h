@@ -85,7 +85,9 @@ struct Recognition {
   /// beyond any noise. (The odds of the classes include covariances, and normals of single
   /// touches.)
   std::size_t simplified_count = 0;
-  /// Noise of a sample, stated or estimated; of one with a covariance, across the curve. [m]
+  /// Noise of a sample, stated or estimated; of one with a covariance, across the curve. Estimated
+  /// where a probe was held at places, that of the means that stand for these: nothing says that
+  /// its readings there err independently. [m]
   double sigma_m = 0.0;
   double noise_correlation_m = 0.0;  ///< over which neighbours err together; 0 = white noise [m]
   /// Of the most probable hypothesis: its covariance if all noise is white and of the stated size.
