@@ -2,7 +2,6 @@
 // machine and under any load.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -53,12 +52,6 @@ class WorkBudget {
     const bool allowed = spent_ < ceiling_;
     was_cut_ = was_cut_ || !allowed;
     return allowed;
-  }
-
-  /// From now on as much as the other bound allows, if that is more.
-  void widen_to(const WorkBudget& other) {
-    most_ = std::max(most_, other.most_);
-    ceiling_ = std::max(ceiling_, other.ceiling_);
   }
 
   bool was_cut() const { return was_cut_; }  ///< whether anything was not allowed

@@ -100,7 +100,6 @@ class Recognizer::Impl {
   /// The method, from stored samples to the answer: core/README.md, "The method on one page".
   Recognition look(WorkBudget& work) {
     const std::vector<StoredPatch>& clean = cleaned(work);
-    work.widen_to(work_limit(clean));  // strokes at a place may have turned out to be touches
     Touched touched{make_fit_data(clean, options_.sigma_m), clean};
     if (!can_answer(touched.data, memory_.patches().size())) {
       return collecting(touched.data);

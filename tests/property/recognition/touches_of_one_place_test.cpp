@@ -45,30 +45,6 @@ std::vector<Vec2> places_around(const Radius& radius, int count, std::mt19937_64
   return places;
 }
 
-// A probe that is held and read 5 to 50 times at each place, as a patch of its own: by the number
-// of readings these are strokes, which may take an eighth of the work that touches may.
-TEST(TouchesOfOnePlace, AreTouchesWhereTheProbeWasHeld) {
-  std::mt19937_64 rng = test::test_rng();
-  for (const int places : {12, 20}) {
-    for (const int readings : {5, 10, 50}) {
-      Recognizer recognizer;
-      const double first = test::uniform(rng, 0.0, 2.0 * kPi);
-      for (int place = 0; place < places; ++place) {
-        const double t = first + 3.4 * place / places;
-        std::vector<ContactSample> held;
-        for (int k = 0; k < readings; ++k) {
-          const Vec2 at(0.03 * std::cos(t), 0.02 * std::sin(t));
-          held.push_back({at + test::normal_pair(rng, 2e-5)});
-        }
-        recognizer.add({0, static_cast<std::uint32_t>(place)}, held);
-      }
-      const Recognition answer = recognizer.recognize();
-      EXPECT_NE(answer.doubt, Doubt::WorkLimit) << places << " places, " << readings;
-      EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse) << places << " places, " << readings;
-    }
-  }
-}
-
 TEST(TouchesOfOnePlace, OfAPartOfNoClassDoNotMakeItOne) {
   // A class is RECOGNIZED from six places at the least, whatever is seen there.
   constexpr int kFewestPlacesOfAll = 6;
