@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/recognition/samples/fit_data.h"
+#include "core/recognition/smooth/followed_sections.h"
 #include "core/recognition/smooth/patch_sections.h"
 
 namespace palpate {
@@ -55,16 +56,6 @@ struct SmoothModel {
 /// reduced points, if these follow the points. A term left out of a section's polynomial adds less
 /// than the logarithm of the section's samples (BIC): 4 for 55.
 inline constexpr double kLeastError = 4.0;
-
-/// With fewer degrees of freedom the sections do not show a noise that nobody states: what a
-/// polynomial leaves of few samples round a bend looks like noise, and is form. Every sample then
-/// stands for itself. The search hardly has more points for that: a section's reduced points are
-/// up to five, of a dozen samples.
-inline constexpr int kDegreesThatShowNoise = 20;
-
-/// What is thought of a stated noise if all sections leave more: that it is too low, or that they
-/// do not follow the path.
-enum class StatedNoise { MayBeTooLow, Holds };
 
 /// Cuts each patch into sections that turn by less than about a radian and fits each by a
 /// polynomial. The Bayesian information criterion chooses its degree. `sigma_known`: the points'

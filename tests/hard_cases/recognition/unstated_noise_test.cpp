@@ -12,6 +12,7 @@
 #include "core/curves/pose2.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/recognizer.h"
+#include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
@@ -75,7 +76,7 @@ TEST(UnstatedNoise, OfDenseStrokesIsThatOfAllSamples) {
             const CurveClass truth = radius > 0.0 ? CurveClass::Circle : CurveClass::Line;
             ++recognized;
             wrong += answer.shape.curve_class == truth ? 0 : 1;
-            expected += 1.0 - answer.hypotheses.front().probability;
+            expected += test::stated_doubt(answer);
           }
         }
       }
@@ -106,7 +107,7 @@ TEST(UnstatedNoise, OfShortStrokesOfAnEdgeMakesItNoPartOfNoClass) {
         ++recognized;
         wrong += answer.shape.curve_class == CurveClass::Line ? 0 : 1;
         of_no_class += answer.shape.curve_class == CurveClass::Unclassified ? 1 : 0;
-        expected_wrong += 1.0 - answer.hypotheses.front().probability;
+        expected_wrong += test::stated_doubt(answer);
       }
     }
     std::cout << strokes << " strokes of " << samples << ": RECOGNIZED " << recognized << ", wrong "
@@ -138,7 +139,7 @@ TEST(UnstatedNoise, OfStrokesTooShortToShowItIsWhatPathsAndClassesLeave) {
       const Recognition answer = test::recognise(touched(one.part, rng), 0.0);
       if (answer.status == RecognitionStatus::Recognized) {
         ++(answer.shape.curve_class == truth ? right : wrong);
-        expected += 1.0 - answer.hypotheses.front().probability;
+        expected += test::stated_doubt(answer);
       }
     }
     std::cout << one.part.strokes << " strokes of " << one.part.samples << ": " << right
@@ -165,7 +166,7 @@ TEST(UnstatedNoise, OfSamplesThatAreCloserIsNoPath) {
             test::recognise(touched({2, samples, length, 2.0 * length, 0.0, false}, rng), 0.0);
         if (answer.status == RecognitionStatus::Recognized) {
           of_no_class += answer.shape.curve_class == CurveClass::Unclassified ? 1 : 0;
-          expected += 1.0 - answer.hypotheses.front().probability;
+          expected += test::stated_doubt(answer);
         }
       }
     }
@@ -194,7 +195,7 @@ TEST(UnstatedNoise, OfFewSamplesIsNotWhatAPolynomialMissesOfThem) {
       const Recognition answer = test::recognise(scene, 0.0);
       if (answer.status == RecognitionStatus::Recognized) {
         wrong += answer.shape.curve_class == CurveClass::Ellipse ? 0 : 1;
-        expected += 1.0 - answer.hypotheses.front().probability;
+        expected += test::stated_doubt(answer);
       }
     }
   }
@@ -237,7 +238,7 @@ TEST(UnstatedNoise, OfCoarseStrokesRoundAnEllipseIsNotTheSizeOfTheirSteps) {
     }
     if (answer.status == RecognitionStatus::Recognized) {
       ++(answer.shape.curve_class == CurveClass::Ellipse ? right : wrong);
-      expected += 1.0 - answer.hypotheses.front().probability;
+      expected += test::stated_doubt(answer);
     }
   }
   std::cout << right << " right, " << wrong << " wrong, by what is told " << expected << "; "
