@@ -104,12 +104,12 @@ class Recognizer::Impl {
     if (!can_answer(touched.data, memory_.patches().size())) {
       return collecting(touched.data);
     }
-    auto joined = joined_touches(clean, options_.sigma_m, options_.classes, work);
-    if (joined) {
-      touched = {make_fit_data(joined->patches, options_.sigma_m), joined->patches};
-      if (joined->start) {  // of the tips' centres
-        touched.sought = {{std::vector<int>(joined->patches.size(), 0), *std::move(joined->start)}};
-      }
+    JoinedTouches joined = joined_touches(clean, options_.sigma_m, options_.classes, work);
+    if (joined.patches) {
+      touched = {make_fit_data(*joined.patches, options_.sigma_m), *joined.patches};
+    }
+    if (joined.start) {  // of the tips' centres
+      touched.sought = {{std::vector<int>(touched.patches.size(), 0), *std::move(joined.start)}};
     }
     const bool by_evidence = options_.method == RecognitionMethod::MaximumLikelihood;
     Recognition answer = by_evidence ? by_likelihood(touched, work) : by_tree(touched, work);

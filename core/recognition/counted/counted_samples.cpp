@@ -230,8 +230,9 @@ std::optional<Weighed> CountedSamples::again_with(std::vector<StoredPatch> more,
                                                   std::span<const SidedStart> starts,
                                                   CurveClass best, std::span<const Vec2> off_m,
                                                   WorkBudget& work) const {
-  if (auto joined = joined_touches(more, options_.sigma_m, options_.weigh.classes, work)) {
-    more = std::move(joined->patches);
+  if (JoinedTouches joined = joined_touches(more, options_.sigma_m, options_.weigh.classes, work);
+      joined.patches) {
+    more = *std::move(joined.patches);
   }
   Weighed again = without_outliers({make_fit_data(more, options_.sigma_m), more}, starts,
                                    StartsOf::LastWeighing, off_m, work);

@@ -279,7 +279,10 @@ std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, cons
                       [&](const auto& run) { return goes_back_and_forth(run, default_sigma_m); }) &&
          leaves_noise(joined.runs, Bends::MayBeSharp, default_sigma_m));
     if (holds) {
-      joined.start = std::move(start);
+      const bool same_points = joined.runs.empty() && sought.size() == patches.size();
+      if (start && (same_points || (stated && !start->polynomials.every_seed))) {
+        joined.start = std::move(start);
+      }
       return joined;
     }
   }
@@ -288,38 +291,39 @@ std::optional<Joined> joined_by_curve(std::span<const StoredPatch> patches, cons
 
 }  // namespace
 
-std::optional<JoinedTouches> joined_touches(std::span<const StoredPatch> patches,
-                                            double default_sigma_m, unsigned classes,
-                                            WorkBudget& work) {
+JoinedTouches joined_touches(std::span<const StoredPatch> patches, double default_sigma_m,
+                             unsigned classes, WorkBudget& work) {
   const Indices lone = lone_patches(patches);
   if (lone.size() < kRun) {
-    return std::nullopt;
+    return {};
   }
   auto joined = joined_by_way(patches, lone, default_sigma_m);
   if (!joined) {
     joined = joined_by_curve(patches, lone, default_sigma_m, classes, work);
   }
-  if (!joined || joined->runs.empty()) {
-    return std::nullopt;
+  if (!joined) {
+    return {};
+  }
+  if (joined->runs.empty()) {
+    return {std::nullopt, std::move(joined->start)};
   }
   std::vector<const Place*> alone(patches.size(), nullptr);
   for (const Place& place : joined->alone) {
     alone[place.patch] = &place;
   }
-  JoinedTouches result;
+  std::vector<StoredPatch> result;
   for (std::size_t p = 0; p < patches.size(); ++p) {
     if (joined->taken[p]) {
       continue;
     }
-    StoredPatch& patch = result.patches.emplace_back(patches[p]);
+    StoredPatch& patch = result.emplace_back(patches[p]);
     if (alone[p] != nullptr) {
       patch.direction = alone[p]->direction;
       patch.turn = alone[p]->turn;
     }
   }
-  std::move(joined->runs.begin(), joined->runs.end(), std::back_inserter(result.patches));
-  result.start = std::move(joined->start);
-  return result;
+  std::move(joined->runs.begin(), joined->runs.end(), std::back_inserter(result));
+  return {std::move(result), std::move(joined->start)};
 }
 
 }  // namespace palpate

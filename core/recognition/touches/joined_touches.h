@@ -11,9 +11,10 @@
 namespace palpate {
 
 struct JoinedTouches {
-  std::vector<StoredPatch> patches;
-  /// Fits of every class to the tip centres that were used to find the order. Only if that came
-  /// from a curve, cubics were among the classes, the noise is stated and a class fits.
+  std::optional<std::vector<StoredPatch>> patches;  ///< nullopt if there is no run
+  /// Fits of every class to the tip centres that were used to find the order: of a search that need
+  /// not be made again. Only if that came from a curve and cubics were among the classes; and where
+  /// it was made with other points than `patches`, only if the noise is stated and a class fits.
   std::optional<WarmStart> start;
 };
 
@@ -24,10 +25,9 @@ struct JoinedTouches {
 /// The order is that of the shortest way through the touches or, if that is in doubt, that along
 /// the curve that explains them best. In a run the curve turns so little from touch to touch that a
 /// polynomial follows it. Touches of different tip radii are not mixed. A run has the probe and
-/// patch number of its first touch and no material side. nullopt if there is no run.
+/// patch number of its first touch and no material side.
 /// `default_sigma_m`: noise of samples that state none [m]. `classes`: bit 1 << CurveClass of each.
-std::optional<JoinedTouches> joined_touches(std::span<const StoredPatch> patches,
-                                            double default_sigma_m, unsigned classes,
-                                            WorkBudget& work);
+JoinedTouches joined_touches(std::span<const StoredPatch> patches, double default_sigma_m,
+                             unsigned classes, WorkBudget& work);
 
 }  // namespace palpate

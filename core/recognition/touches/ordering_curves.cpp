@@ -85,10 +85,7 @@ std::vector<PlacedCurve> curves_through(const FitData& data, unsigned classes,
     return conics;
   }
   const ClassFits fits = fit_classes(reduced, work, nullptr, classes);
-  WarmStart found = warm_start_from(fits, reduced);
-  if (arcs.sigma_known && !found.polynomials.every_seed) {
-    *start = std::move(found);
-  }
+  *start = warm_start_from(fits, reduced);
   return best_first(fits, arcs, kAllClasses);
 }
 

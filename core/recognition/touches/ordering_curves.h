@@ -44,7 +44,7 @@ struct PlacedCurve {
 };
 
 /// Curves by which to order the touches, the likeliest first. `start` receives the fits if every
-/// class was searched and one fits.
+/// class was searched.
 std::vector<PlacedCurve> curves_through(const FitData& data, unsigned classes,
                                         std::optional<WarmStart>* start, WorkBudget& work);
 
