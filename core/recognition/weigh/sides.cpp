@@ -180,6 +180,7 @@ class TriedWays {
     choice.sides = possible_.ways.front();
     choice.reduced = on_surface(seen_.touches, choice.sides);
     choice.fits = fit_classes_from(starts_, choice.sides, choice.reduced, by_, by_.out_of_reach);
+    choice.evidences = by_.of_paths;
     return choice;
   }
 
@@ -219,11 +220,21 @@ class TriedWays {
   /// take a way of overwhelming evidence to speak against both; the search of one takes as much
   /// work as the first.)
   bool is_excluded(const std::vector<int>& sides) const {
-    return by_.touched_from != TouchedFrom::Unknown && possible_.ways.size() > 1 &&
-           sides == possible_.ways[1] && any_bends() &&
+    return by_.touched_from != TouchedFrom::Unknown && is_against_a_bend(sides) &&
            std::any_of(choices_.begin(), choices_.end(), [&](const SideChoice& choice) {
              return choice.expected && is_conic(choice.candidate) && fits_all(choice, by_);
            });
+  }
+
+  /// Whether a stroke that bends beyond doubt has the tip on another side than expected.
+  bool is_against_a_bend(const std::vector<int>& sides) const {
+    const std::vector<int>& expected = possible_.ways.front();
+    for (std::size_t p = 0; p < sides.size(); ++p) {
+      if (sides[p] != expected[p] && certain_turn(seen_.touches.patch(p))) {
+        return true;
+      }
+    }
+    return false;
   }
 
   SideChoice judged(SideChoice choice) {
@@ -386,7 +397,7 @@ bool rejudge_sides(const SideContext& by, SidedFits* sided) {
   for (SideChoice& choice : sided->choices) {
     if (choice.settled && by.work.allows()) {
       choice.evidences = by.of_paths;
-      take_candidate(by, &choice);
+      take_candidate(by, ModesOf::Prior, &choice);
     }
     choice.log_evidence = log_evidence_of(choice, by);
   }

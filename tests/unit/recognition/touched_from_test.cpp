@@ -2,6 +2,7 @@
 // not RECOGNIZED, and what is stated holds.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -138,6 +139,38 @@ TEST(TouchedFrom, SparesTheSearchOnTheOtherSide) {
     work_if_not += not_said.recognize().work.spent();
   }
   EXPECT_LT(work_if_said, 0.6 * work_if_not);
+}
+
+// Strokes that travel against one another would lie on one side of their travel inside a bend and
+// outside another: that is not what was said either.
+TEST(TouchedFrom, SparesItHoweverStrokesTravel) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigmaM);
+  double work_along = 0.0;
+  double work_against = 0.0;
+  for (int part = 0; part < test::stress_count(20); ++part) {
+    Recognizer along(options_with(TouchedFrom::Outside));
+    Recognizer against(options_with(TouchedFrom::Outside));
+    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
+    for (std::uint32_t patch = 0; patch < 2; ++patch) {
+      std::vector<ContactSample> stroke;
+      for (int i = 0; i < 40; ++i) {
+        const double t = first + 3.0 * patch + 1.2 * i / 40.0;
+        const Vec2 outwards = Vec2(0.02 * std::cos(t), 0.03 * std::sin(t)).normalized();
+        const Vec2 place(0.03 * std::cos(t), 0.02 * std::sin(t));
+        stroke.push_back({place + kTipM * outwards + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
+      }
+      along.add({0, patch, kTipM}, stroke);
+      if (patch == 1) {
+        std::reverse(stroke.begin(), stroke.end());
+      }
+      against.add({0, patch, kTipM}, stroke);
+    }
+    work_along += along.recognize().work.spent();
+    work_against += against.recognize().work.spent();
+  }
+  // The same curves are fitted to the same points; searched the other way they end a step apart.
+  EXPECT_LT(work_against, 1.1 * work_along);
 }
 
 TEST(TouchedFrom, AStatedSideHoldsAgainstIt) {
