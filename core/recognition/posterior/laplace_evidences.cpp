@@ -158,7 +158,8 @@ class LaplaceEvidences {
 
 Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
                        const SmoothModel& smooth, const FitData& reduced,
-                       const Likelihood& likelihood, Evidences before, WorkBudget& work) {
+                       const Likelihood& likelihood, Evidences before, WorkBudget& work,
+                       ModesOf modes) {
   // A fit that leaves no less than nearly straight paths, both told to 1, is one of these.
   constexpr double kNoBetter = 2.0;
   const double inflation = likelihood.inflation();
@@ -191,10 +192,12 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
   for (const CurveClass curve_class : order) {
     laplace.take(curve_class);
   }
-  add_prior_modes(fits, reduced, likelihood,
-                  log_evidence_of_unclassified(likelihood, laplace.found, smooth.chi2),
-                  &laplace.found, work);
-  add_limits(fits, reduced, likelihood, laplace.best, before, &laplace.found, work);
+  if (modes == ModesOf::Prior) {
+    add_prior_modes(fits, reduced, likelihood,
+                    log_evidence_of_unclassified(likelihood, laplace.found, smooth.chi2),
+                    &laplace.found, work);
+    add_limits(fits, reduced, likelihood, laplace.best, before, &laplace.found, work);
+  }
   keep_known(before, &laplace.found);
   return std::move(laplace.found);
 }

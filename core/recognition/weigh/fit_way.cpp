@@ -124,6 +124,7 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     choice.sides.assign(sides.begin(), sides.end());
     choice.fits = std::move(fits);
     choice.reduced = std::move(reduced);
+    choice.evidences = by.of_paths;
     return choice;
   }
   SideChoice choice = choice_of(sides, std::move(fits), std::move(reduced), by);
@@ -186,6 +187,12 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       break;
     }
   }
+  if (const SidedStart* start = start_for(starts, sides); start && !start->modes.modes.empty()) {
+    choice.evidences = by.of_paths;
+    choice.evidences.earlier_modes = carried_modes(start->modes, choice.fits, choice.reduced,
+                                                   by.likelihood.inflation(), by.work);
+  }
+  take_candidate(by, ModesOf::Prior, &choice);
   return choice;
 }
 

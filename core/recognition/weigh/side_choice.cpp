@@ -8,7 +8,6 @@
 
 #include "core/recognition/coherent/coherent_evidence.h"
 #include "core/recognition/fit/on_all_points.h"
-#include "core/recognition/posterior/laplace_evidences.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/weigh/contenders.h"
 
@@ -52,11 +51,11 @@ ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const i
                      out_of_reach);
 }
 
-bool settle_candidate(const SideContext& by, SideChoice* choice) {
+bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {
   const SmoothModel& smooth = by.arcs.smooth;
   const ClassFits told = with_inferred_chi2(choice->fits, smooth);
   choice->evidences = evidences_of(told, choice->fits, smooth, choice->reduced, by.likelihood,
-                                   std::move(choice->evidences), by.work);
+                                   std::move(choice->evidences), by.work, modes);
   const CurveClass before = choice->candidate;
   choice->candidate = best_class(told, by.likelihood, choice->evidences);
   if (choice->candidate == before) {
@@ -73,8 +72,8 @@ bool settle_candidate(const SideContext& by, SideChoice* choice) {
   return true;
 }
 
-void take_candidate(const SideContext& by, SideChoice* choice) {
-  if (settle_candidate(by, choice) && choice->settled) {
+void take_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {
+  if (settle_candidate(by, modes, choice) && choice->settled) {
     choice->refined =
         seen_by_all(*choice->settled, points_of(*choice->settled, choice->reduced), by);
     if (choice->refined && choice->refined->on_all &&
@@ -91,7 +90,7 @@ SideChoice choice_of(std::span<const int> sides, ClassFits fits, FitData reduced
   choice.fits = std::move(fits);
   choice.reduced = std::move(reduced);
   choice.evidences = by.of_paths;
-  take_candidate(by, &choice);
+  take_candidate(by, ModesOf::Fit, &choice);
   return choice;
 }
 

@@ -9,6 +9,7 @@
 #include "core/numerics/work_budget.h"
 #include "core/recognition/posterior/edges.h"
 #include "core/recognition/posterior/evidences.h"
+#include "core/recognition/posterior/laplace_evidences.h"
 #include "core/recognition/smooth/arcs.h"
 #include "core/recognition/weigh/sided_start.h"
 
@@ -28,6 +29,7 @@ struct SideChoice {
   /// The candidate on all points, unless they agree with the reduced points; nullopt where it is no
   /// such curve there, or has tips on other sides: centres show theirs whichever were assumed.
   std::optional<ClassFit> refined;
+  /// Of free paths and what was known of modes before; of the classes, once a candidate is taken.
   Evidences evidences;
   /// log of the evidence of the candidate, however free-form paths fare beside it; -infinity where
   /// it is on no points.
@@ -58,12 +60,12 @@ ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const i
 
 /// The class that a choice stands or falls with, by the evidence of all, and its optimum on the
 /// reduced points. Returns whether it is another than before.
-bool settle_candidate(const SideContext& by, SideChoice* choice);
+bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice);
 
 /// The same, and on all points. What was refined before is not once more.
-void take_candidate(const SideContext& by, SideChoice* choice);
+void take_candidate(const SideContext& by, ModesOf modes, SideChoice* choice);
 
-/// The choice of these sides with these fits to these points, its candidate taken.
+/// The choice of these sides with these fits to these points, its candidate taken by their modes.
 SideChoice choice_of(std::span<const int> sides, ClassFits fits, FitData reduced,
                      const SideContext& by);
 

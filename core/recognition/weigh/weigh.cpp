@@ -55,19 +55,14 @@ struct Placed {
 };
 
 /// Every class of one way in which the tips may lie, the plausible ones refined on all points.
-/// `start`: what the last weighing kept for it; may be nullptr.
-Contenders contending(ClassFits coarse, const SidedStart* start, const EvidenceContext& context,
-                      const WeighOptions& options, const Evidences& of_paths) {
+/// `evidences`: what is known of them by then.
+Contenders contending(ClassFits coarse, Evidences evidences, const EvidenceContext& context,
+                      const WeighOptions& options) {
   const Arcs& arcs = context.arcs;
   Contenders contenders;
   contenders.coarse = testable(std::move(coarse), with_limits(options.classes), arcs);
   contenders.fits = with_inferred_chi2(contenders.coarse, arcs.smooth);
-  contenders.evidences = of_paths;
-  if (start != nullptr) {
-    contenders.evidences.earlier_modes =
-        carried_modes(start->modes, contenders.coarse, context.reduced,
-                      context.likelihood.inflation(), context.work);
-  }
+  contenders.evidences = std::move(evidences);
   return refine_plausible(std::move(contenders), context, margin_of(options));
 }
 
@@ -310,14 +305,20 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
       return weigh_arcs(std::move(to_weigh), patches, work, options, found);
     }
   }
-  const auto contenders_of_choice = [&](const EvidenceContext& context, const Evidences& paths) {
+  const auto contenders_of_choice = [&](const EvidenceContext& context) {
     SideChoice& choice = sided.choices[sided.taken];
+    const SidedStart* start = start_for(starts, choice.sides);
+    if (start != nullptr && !choice.settled) {  // else it is weighed by them already
+      choice.evidences.earlier_modes = carried_modes(start->modes, choice.fits, choice.reduced,
+                                                     context.likelihood.inflation(), context.work);
+    }
     // Where there are several they may have to be judged again.
-    ClassFits fits = sided.choices.size() > 1 ? choice.fits : std::move(choice.fits);
-    return contending(std::move(fits), start_for(starts, choice.sides), context, options, paths);
+    const bool keep = sided.choices.size() > 1;
+    return contending(keep ? choice.fits : std::move(choice.fits),
+                      keep ? choice.evidences : std::move(choice.evidences), context, options);
   };
   const EvidenceContext at_first{arcs, sided.choice().reduced, work, stated, hopeless};
-  Contenders contenders = contenders_of_choice(at_first, of_paths);
+  Contenders contenders = contenders_of_choice(at_first);
   std::optional<Placed> best_placed = best_on_all(contenders, at_first);
   if (work.allows()) {
     if (auto nearer = bettered(&arcs, best_placed)) {
@@ -340,7 +341,7 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
                                                           &sided);
   const EvidenceContext context{arcs, sided.choice().reduced, work, likelihood, hopeless};
   if (otherwise) {
-    contenders = contenders_of_choice(context, of_seen_paths);
+    contenders = contenders_of_choice(context);
     best_placed.reset();
   } else if (seen.likelihood) {
     contenders.evidences = of_seen_paths;
