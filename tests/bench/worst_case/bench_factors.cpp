@@ -1,6 +1,7 @@
 // By what factor one condition increases the cost of recognize(), over random scenes that are
 // otherwise the same: tips whose side is not stated, spikes in 30 % of the samples, or both. Also
-// the cost of a stream's updates compared with their median.
+// the cost of a stream's updates compared with their median, and how many of the dearest ones began
+// a patch, so that all curves were sought anew.
 //   bench_factors [--scenes N] [--seed S]
 // Costs are processor times of this thread, the least of three runs.
 #include <algorithm>
@@ -52,35 +53,51 @@ void print(const std::string& what, std::vector<double> values) {
               at(0.99), at(1.0));
 }
 
-/// Costs of the updates of one stream.
-std::vector<double> update_costs_us(const TouchedInput& input) {
+struct Update {
+  double cost = 0.0;  ///< [us], or over the median of its stream
+  bool begins_patch = false;
+};
+
+/// The updates of one stream.
+std::vector<Update> updates_of(const TouchedInput& input) {
   Recognizer recognizer;
-  std::vector<double> us;
+  std::vector<Update> updates;
   for (const bench::TouchedPatch& patch : input) {
     for (std::size_t begin = 0; begin < patch.samples.size(); begin += kSamplesPerUpdate) {
       const std::size_t count = std::min(kSamplesPerUpdate, patch.samples.size() - begin);
       recognizer.add(patch.context, std::span(patch.samples).subspan(begin, count));
-      us.push_back(recognize_us(recognizer));
+      updates.push_back({recognize_us(recognizer), begin == 0});
     }
   }
-  return us;
+  return updates;
 }
 
-/// The same divided by their median.
-std::vector<double> updates_over_median(const TouchedInput& input) {
-  std::vector<double> least = update_costs_us(input);
+/// The same with their costs divided by the median.
+std::vector<Update> updates_over_median(const TouchedInput& input) {
+  std::vector<Update> least = updates_of(input);
   for (int i = 1; i < kRepetitions; ++i) {
-    const std::vector<double> us = update_costs_us(input);
-    std::transform(us.begin(), us.end(), least.begin(), least.begin(),
-                   [](double a, double b) { return std::min(a, b); });
+    const std::vector<Update> again = updates_of(input);
+    for (std::size_t k = 0; k < least.size(); ++k) {
+      least[k].cost = std::min(least[k].cost, again[k].cost);
+    }
   }
-  std::vector<double> sorted = least;
-  std::sort(sorted.begin(), sorted.end());
-  const double median = sorted[sorted.size() / 2];
-  for (double& value : least) {
-    value /= median;
+  std::vector<Update> sorted = least;
+  std::ranges::sort(sorted, {}, &Update::cost);
+  const double median = sorted[sorted.size() / 2].cost;
+  for (Update& update : least) {
+    update.cost /= median;
   }
   return least;
+}
+
+void print_dearest(const std::vector<Update>& updates) {
+  constexpr double kDear = 8.0;
+  const auto is_dear = [](const Update& update) { return update.cost > kDear; };
+  std::printf("updates above %.0f times: %td of %zu, %td of which began a patch\n", kDear,
+              std::ranges::count_if(updates, is_dear), updates.size(),
+              std::ranges::count_if(updates, [&](const Update& update) {
+                return is_dear(update) && update.begins_patch;
+              }));
 }
 
 }  // namespace
@@ -95,7 +112,8 @@ int main(int argc, char** argv) {
     return *end;
   }
   std::mt19937_64 rng(seed);
-  std::vector<double> plain, sides, spikes, both, updates;
+  std::vector<double> plain, sides, spikes, both, costs;
+  std::vector<Update> updates;
   for (int i = 0; i < scenes; ++i) {
     InputRecipe recipe = bench::plain_recipe(rng);
     recipe.tip = 0.1;
@@ -111,13 +129,17 @@ int main(int argc, char** argv) {
     sides.push_back(factor(0.0, 0.0));
     spikes.push_back(factor(1.0, 0.3));
     both.push_back(factor(0.0, 0.3));
-    for (const double ratio : updates_over_median(input)) updates.push_back(ratio);
+    for (const Update& update : updates_over_median(input)) {
+      updates.push_back(update);
+      costs.push_back(update.cost);
+    }
   }
   std::printf("%-44s %8s %8s %8s %8s %8s\n", "", "values", "median", "90 %", "99 %", "maximum");
   print("us, tips whose side is told", plain);
   print("factor of sides not told", sides);
   print("factor of spikes in 30 % of the samples", spikes);
   print("factor of both", both);
-  print("updates of a stream over its median", updates);
+  print("updates of a stream over its median", costs);
+  print_dearest(updates);
   return 0;
 }
