@@ -83,7 +83,7 @@ class Recognizer::Impl {
   }
 
   Recognition recognize() {
-    WorkBudget work = work_limit(memory_.patches());
+    WorkBudget work = work_limit(memory_.patches(), options_.patience);
     Recognition answer = look(work);
     if (work.was_cut() && answer.status != RecognitionStatus::Collecting) {
       answer.status = RecognitionStatus::Ambiguous;

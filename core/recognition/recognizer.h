@@ -54,6 +54,9 @@ struct RecognizerOptions {
   TouchedFrom touched_from = TouchedFrom::Unknown;
   /// Probability that a scene without spikes loses a sample to outlier rejection.
   double false_outlier_probability = 0.01;
+  /// How many times the work of an answer that a planner waits for one may take
+  /// (samples/work_limit.h).
+  double patience = 1.0;
   /// Classes to consider: bit 1 << CurveClass of each. Default: all.
   unsigned classes = ~0U;
   MemoryOptions memory;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/recognition/recognizer.h"
+#include "core/recognition/samples/work_limit.h"
 #include "node/python/array_check.h"
 #include "node/python/known_class.h"
 #include "node/python/names.h"
@@ -110,9 +111,9 @@ class Recognizer {
  public:
   Recognizer(double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
              std::optional<bool> unqualified_probe, std::size_t most_patches,
-             std::size_t most_samples_per_patch, const std::string& touched_from)
+             std::size_t most_samples_per_patch, const std::string& touched_from, double patience)
       : recognizer_(options_of(sigma_m, classes, form_deviation_m, unqualified_probe, most_patches,
-                               most_samples_per_patch, touched_from)) {}
+                               most_samples_per_patch, touched_from, patience)) {}
 
   /// `points`: n x 2, in metres. `sigma_m`: length n, 1 or 0. The others as in PointDetails.
   /// Returns how many points were accepted, and how many only repeat the place of the one before.
@@ -195,7 +196,7 @@ class Recognizer {
   static palpate::RecognizerOptions options_of(
       double sigma_m, const std::vector<std::string>& classes, double form_deviation_m,
       std::optional<bool> unqualified_probe, std::size_t most_patches,
-      std::size_t most_samples_per_patch, const std::string& touched_from) {
+      std::size_t most_samples_per_patch, const std::string& touched_from, double patience) {
     for (const auto& [name, value] :
          {std::pair("sigma", sigma_m), std::pair("form_deviation", form_deviation_m)}) {
       if (!(std::isfinite(value) && value >= 0.0)) {
@@ -207,6 +208,7 @@ class Recognizer {
     options.form_deviation_m = form_deviation_m;
     options.unqualified_probe = unqualified_probe;
     options.touched_from = palpate::place_called(touched_from);
+    options.patience = patience;
     options.memory.most_patches = most_patches;
     options.memory.most_lone_touches = std::max(options.memory.most_lone_touches, most_patches);
     options.memory.most_samples_per_patch = most_samples_per_patch;
@@ -232,7 +234,7 @@ class Recognizer {
 PYBIND11_MODULE(_core, module) {
   py::class_<Recognizer>(module, "Recognizer")
       .def(py::init<double, const std::vector<std::string>&, double, std::optional<bool>,
-                    std::size_t, std::size_t, const std::string&>())
+                    std::size_t, std::size_t, const std::string&, double>())
       .def("add", &Recognizer::add)
       .def("recognize", &Recognizer::recognize)
       .def("warnings", &Recognizer::warnings)
@@ -264,6 +266,7 @@ PYBIND11_MODULE(_core, module) {
       .def_property_readonly("hypotheses", &Answer::hypotheses)
       .def_property_readonly("contacts", &Answer::contacts);
   palpate::add_known_class(module);
+  module.def("patience_with_files", [] { return palpate::kPatienceWithFiles; });
   module.def("check_sendable_lengths", &palpate::check_sendable_lengths);
   module.def("check_sendable_points", &palpate::check_sendable_points);
   module.def("curve_classes", &palpate::curve_classes);

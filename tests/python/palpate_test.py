@@ -119,6 +119,22 @@ class Fit(unittest.TestCase):
                              material_side="left")
         self.assertAlmostEqual(result.params["a"], 15, places=2)
 
+    def test_fit_has_more_patience_than_a_stream(self):
+        rng = np.random.default_rng(5)
+        places = ellipse(0.0, 3.4, 25)
+        held = [place + rng.normal(0, SIGMA, (20, 2)) for place in places]
+        hasty, patient = palpate.Recognizer(unit="mm"), palpate.Recognizer(unit="mm", patience=8)
+        for number, place in enumerate(held):
+            for recognizer in (hasty, patient):
+                recognizer.add(place, patch=number, tip_radius=1.0)
+        self.assertEqual(hasty.recognize().doubt, "work_limit")
+        answer = patient.recognize()
+        self.assertNotEqual(answer.doubt, "work_limit")
+        self.assertEqual(answer.probabilities, palpate.fit(held, unit="mm", tip_radius=1.0).probabilities)
+        for patience in (0.5, 0, -1, math.nan, "much"):
+            with self.assertRaisesRegex(ValueError, "patience"):
+                palpate.Recognizer(patience=patience)
+
     def test_touched_from_tells_a_bore(self):
         t = np.linspace(0, 6, 200)
         centres = 17 * np.column_stack([np.cos(t), np.sin(t)]) + np.random.default_rng(3).normal(0, 1e-3, (200, 2))

@@ -43,13 +43,13 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches) {
   return kOfSample * n + std::min({by_samples, of_few_patches, of_some_patches, of_many_patches});
 }
 
-WorkBudget work_limit(std::span<const StoredPatch> patches) {
+WorkBudget work_limit(std::span<const StoredPatch> patches, double patience) {
   const std::size_t samples = count_samples(patches);
   const double by_strokes = work_of_clean_ellipse(samples, patches.size());
   const double clean = by_strokes * (are_mostly_touches(patches) ? kOfTouches
                                      : have_covariances(patches) ? kOfCovariances
                                                                  : 1.0);
-  WorkBudget work(kMostWork * clean, kAlways * clean);
+  WorkBudget work(patience * kMostWork * clean, kAlways * clean);
   work.spend(WorkKind::Sample, samples);
   return work;
 }

@@ -16,10 +16,16 @@ namespace palpate {
 /// covariance (recognizer.cpp).
 inline constexpr double kMostWork = 6.5;
 
+/// Times that, for samples that are all there and are asked about once, as those of a file: nobody
+/// notices whether 64 clean ellipses have taken their time or one, as long as both are tenths of a
+/// second. (Of ten thousand samples they are half of one.)
+inline constexpr double kPatienceWithFiles = 8.0;
+
 /// Work that a clean ellipse of so many samples in so many patches takes, at most.
 double work_of_clean_ellipse(std::size_t samples, std::size_t patches);
 
-/// What an answer on these patches may take; that their samples are read is counted.
-WorkBudget work_limit(std::span<const StoredPatch> patches);
+/// What an answer on these patches may take; that their samples are read is counted. `patience`:
+/// times kMostWork.
+WorkBudget work_limit(std::span<const StoredPatch> patches, double patience = 1.0);
 
 }  // namespace palpate

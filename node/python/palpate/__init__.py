@@ -49,11 +49,13 @@ class Recognizer:
     most_patches: patches kept (not counting patches of one point); beyond it the oldest is forgotten.
     most_samples_per_patch: points kept of a patch, at least 64; beyond it neighbours are merged.
     unqualified_probe, touched_from: see fit().
+    patience: how many times the work that is usual in a control loop an answer may take. What needs more is ambiguous, with the doubt
+    "work_limit". fit(), which is asked once, has 8.
     """
 
     def __init__(self, sigma: float | None = None, unit: str = "m", classes: str | Iterable[str] = (),
                  form_deviation: float = 0.0, most_patches: int = 64, most_samples_per_patch: int = 1024,
-                 unqualified_probe: bool | None = None, touched_from: str = "unknown") -> None:
+                 unqualified_probe: bool | None = None, touched_from: str = "unknown", patience: float = 1.0) -> None:
         self._unit = unit
         self._scale = units(unit)
         if unqualified_probe is not None and not isinstance(unqualified_probe, (bool, np.bool_)):
@@ -65,7 +67,7 @@ class Recognizer:
                                       self._scale * length("form_deviation", form_deviation), unqualified_probe,
                                       _whole("most_patches", most_patches, 1),
                                       _whole("most_samples_per_patch", most_samples_per_patch, _LEAST_SAMPLES),
-                                      str(touched_from))
+                                      str(touched_from), _patience(patience))
         self._added = 0
         self._checked = 0  # of those added
         self._points: list[np.ndarray] = []
@@ -170,7 +172,7 @@ def fit(points, sigma=None, unit: str = "m", tip_radius: float = 0.0, material_s
         raise ValueError("normals: not as many as points")
     # The whole list is known, so no patch needs to be forgotten.
     recognizer = Recognizer(None, unit, classes, form_deviation, max(64, len(patches)), most_samples_per_patch,
-                            unqualified_probe, touched_from)
+                            unqualified_probe, touched_from, _core.patience_with_files())
     accepted = 0
     for number, patch in enumerate(patches):
         its_normals = of_patches[number]
@@ -190,6 +192,13 @@ def _check_sides(tip_radius: float, material_side: str, touched_from: str, touch
     for what, is_said in (("touched_from", touched_from != "unknown"), ("material_side", has_side and not has_normals)):
         if is_said and tip_radius == 0:
             raise ValueError(f"{what}: tells the side of a round tip, and tip_radius is 0")
+
+
+def _patience(value: float) -> float:
+    patience = length("patience", value)
+    if patience < 1:
+        raise ValueError(f"patience: {value!r}: must be 1 or more")
+    return patience
 
 
 def _whole(what: str, value: int, least: int = 0) -> int:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/recognition/samples/work_limit.h"
 #include "node/check/approach_check.h"
 #include "node/check/group_check.h"
 #include "node/files/counted.h"
@@ -28,6 +29,7 @@ void add_recognised(const FitRequest& fit, const FitInput& input, const ProbeFil
   RecognizerOptions options = fit.recognizer;
   const bool patches_are_bounded =
       std::find(fit.said.begin(), fit.said.end(), "most_patches") != fit.said.end();
+  options.patience = kPatienceWithFiles;
   options.memory = memory_for(input.group, options.memory, patches_are_bounded);
   Answered answered = recognise(input, options, probes, told->notes);
   told->answer = std::move(answered.wire);
