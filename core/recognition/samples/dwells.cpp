@@ -243,21 +243,28 @@ std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m) {
-  constexpr double kSmall = 1e-2;
-  if (samples.size() < kFewestInOrder) {
+  if (samples.size() < 2) {
     return false;
   }
+  constexpr double kSmall = 1e-2;
+  // Over it a curve that bends by the part's size is off a chord by half a millionth of that: means
+  // are as good as what they stand for, and so few samples know no direction better.
+  constexpr double kTiny = 1e-3;
+  const bool may_show_order = samples.size() >= kFewestInOrder;
+  const bool must_show_order = samples.size() >= 2 * kFewestInOrder;
   const auto most = most_square_of_noise(samples, default_sigma_m);
   const double of_noise = most.value_or(0.0);
   const double n = static_cast<double>(samples.size());
-  const double small = kSmall * kSmall * half_extent_m * half_extent_m;
+  const double half_square = half_extent_m * half_extent_m;
+  const double small = may_show_order ? kSmall * kSmall * half_square : 0.0;
+  const double tiny = must_show_order ? 0.0 : kTiny * kTiny * half_square;
   // Two samples alone, if so far apart, make the mean square as large: a quick test.
   const Vec2 across = samples[samples.size() / 2].position_m - samples.front().position_m;
-  if (across.squaredNorm() > 2.0 * n * std::max(of_noise, small)) {
+  if (across.squaredNorm() > 2.0 * n * std::max({of_noise, small, tiny})) {
     return false;
   }
   const SampleBlock all = block_of(samples, 0, samples.size());
-  return (most && all.square <= of_noise) ||
+  return (most && all.square <= of_noise) || all.square <= tiny ||
          (all.square <= small && ratio_of(samples, all) > kNoOrder);
 }
 

@@ -20,10 +20,11 @@ std::vector<PatchSpan> dwells_of(std::span<const StoredSample> samples,
 /// the mean step. This happens if a probe is read more often than it moves. O(samples).
 std::vector<PatchSpan> repeats_of(std::span<const StoredSample> samples);
 
-/// True if a patch of at least kFewestInOrder (step_ratio.h) samples is all one place, a touch that
-/// was held. If the noise is stated (by the samples or `default_sigma_m` [m]): the samples spread
-/// no more than the noise. In any case: they show no order and lie within a hundredth of
-/// `half_extent_m` [m], the half extent of all patches.
+/// True if a patch of several samples is all one place, a touch that was held. If the noise is
+/// stated (by the samples or `default_sigma_m` [m]): the samples spread no more than the noise. In
+/// any case: at least kFewestInOrder (step_ratio.h) samples show no order and lie within a
+/// hundredth of `half_extent_m` [m], the half extent of all patches; or fewer than twice as many,
+/// which noise may put in order, lie within a thousandth.
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
                   double half_extent_m);
 

@@ -168,6 +168,30 @@ TEST_F(Dwells, OfATouchThatIsHeldAreTheWholePatch) {
   }
 }
 
+// Read two to four times: no order can be seen, but noise that is stated explains all of it, and
+// over a thousandth of the part no curve is told.
+TEST_F(Dwells, OfAFewReadingsAreOnePlace) {
+  constexpr int kPlaces = 1000;
+  for (const std::size_t count : {2, 3, 4}) {
+    int apart = 0;
+    for (int place = 0; place < kPlaces; ++place) {
+      std::vector<StoredSample> held;
+      for (std::size_t i = 0; i < count; ++i) {
+        held.push_back(sample_at(on_circle(1.0) + noise()));
+      }
+      apart += is_one_place(held, 0.0, kPart) ? 0 : 1;
+      for (StoredSample& sample : held) {
+        sample.sigma_m = 0.0;
+      }
+      EXPECT_TRUE(is_one_place(held, 0.0, kPart)) << count;
+      EXPECT_FALSE(is_one_place(held, 0.0, 10.0 * kNoise)) << count;  // a tenth of the part or so
+    }
+    // A spread of 1.6 times the noise's: chi-square of 2 (n - 1) degrees above 5.12 n, which two
+    // readings exceed once in 167 times and more of them more seldom. Four deviations.
+    EXPECT_LE(apart, 6.0 + 4.0 * std::sqrt(6.0)) << count;
+  }
+}
+
 TEST_F(Dwells, AShortStrokeIsNoHeldTouch) {
   // 50 deviations long, a hundredth of the part.
   for (int seed = 0; seed < 50; ++seed) {
