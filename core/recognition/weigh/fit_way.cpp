@@ -112,8 +112,10 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
                      std::span<const SidedStart> starts, const CurveOfCentres& centres) {
   const SmoothModel& smooth = by.arcs.smooth;
   const auto along_own = [&](ClassFits fits, const FitData& reduced, const ClassFits* before) {
-    return along_own_directions(std::move(fits), reduced, sides, smooth, {centres.fits(), before},
-                                by.work);
+    return has_lone_tips(reduced, smooth)
+               ? along_own_directions(std::move(fits), reduced, sides, smooth,
+                                      {centres.fits(), before}, by.work)
+               : fits;
   };
   FitData reduced = on_surface(touches, sides);
   ClassFits fits =

@@ -163,22 +163,17 @@ std::optional<ClassFit> limit_for(CurveClass i, const ClassFits& fits) {
   return limit;
 }
 
-/// Whether any tip touched once. Along a stroke, or touches that are joined, neighbours tell the
-/// directions nearly, and to move every class takes a work that a search there has not got.
+}  // namespace
+
 bool has_lone_tips(const FitData& reduced, const SmoothModel& smooth) {
   return std::any_of(reduced.patches.begin(), reduced.patches.end(), [&](const PatchSpan& patch) {
     return patch.size() == 1 && smooth.reduced.points[patch.begin].offset > 0.0;
   });
 }
 
-}  // namespace
-
 ClassFits along_own_directions(ClassFits fits, const FitData& reduced, std::span<const int> sides,
                                const SmoothModel& smooth, const OtherStarts& others,
                                WorkBudget& work) {
-  if (!has_lone_tips(reduced, smooth)) {
-    return fits;
-  }
   const Tips tips{reduced, smooth.reduced, smooth, sides, work};
   for (const CurveClass i :
        {CurveClass::Line, CurveClass::Circle, CurveClass::Parabola, CurveClass::CubicalParabola,

@@ -16,13 +16,17 @@ struct OtherStarts {
   const ClassFits* before = nullptr;      ///< along their own directions, before a new search
 };
 
+/// Whether any tip touched once. Along a stroke, or touches that are joined, neighbours tell the
+/// directions nearly, and to move every class in a search takes a work that it has not got there.
+bool has_lone_tips(const FitData& reduced, const SmoothModel& smooth);
+
 /// The fits to `reduced`, each moved to where its class has the tips' centres at the distance of
 /// their radii, if it leaves less there; and with the surface points that it has there.
 ///
 /// Points that show no direction of their own lie on `reduced` along that of one curve. Another
 /// class does not have them: directions that differ by an angle put the surface off by half its
-/// square times the tip's radius. Centres have no directions. Where no tip touches alone, the fits
-/// stay. `sides`: of the patches, as `reduced` has them. O(points) per step.
+/// square times the tip's radius. Centres have no directions. `sides`: of the patches, as `reduced`
+/// has them. O(points) per step.
 ClassFits along_own_directions(ClassFits fits, const FitData& reduced, std::span<const int> sides,
                                const SmoothModel& smooth, const OtherStarts& others,
                                WorkBudget& work);

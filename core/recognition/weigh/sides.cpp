@@ -13,6 +13,7 @@
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/fit_way.h"
+#include "core/recognition/weigh/own_directions.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
@@ -350,6 +351,20 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   }
 }
 
+/// Where a cubic leads, takes the classes of the way that is taken to where each has the tips'
+/// centres itself: samples that show no direction have that of the cubic, which may turn otherwise
+/// between the others than any conic. (Conics turn alike. Of tips that touch alone every way has it
+/// so.)
+void take_own_directions(const SideContext& by, SidedFits* sided) {
+  const SmoothModel& smooth = by.arcs.smooth;
+  SideChoice& choice = sided->choices[sided->taken];
+  if (has_kept_tips(smooth) && choice.settled && (class_bit(choice.candidate) & kCubics) != 0 &&
+      !has_lone_tips(choice.reduced, smooth) && by.work.allows()) {
+    choice.fits = along_own_directions(std::move(choice.fits), choice.reduced, choice.sides, smooth,
+                                       {}, by.work);
+  }
+}
+
 }  // namespace
 
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
@@ -387,6 +402,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   sided.choices = std::move(tried).take();
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);
+  take_own_directions(by, &sided);
   return sided;
 }
 
