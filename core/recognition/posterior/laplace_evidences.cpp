@@ -184,8 +184,10 @@ Evidences evidences_of(const ClassFits& fits, const ClassFits& on_reduced,
     }
   }
   if (bend && laplace.is_seen(CurveClass::Line)) {
-    add_straight_paths(fits, likelihood, *bend, same_line ? &before : nullptr, &laplace.found,
-                       work);
+    if (modes == ModesOf::Prior) {
+      add_straight_paths(fits, likelihood, *bend, same_line ? &before : nullptr, &laplace.found,
+                         work);
+    }
     keep_known(before, &laplace.found);
     return std::move(laplace.found);
   }

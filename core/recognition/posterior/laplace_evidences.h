@@ -9,7 +9,8 @@
 namespace palpate {
 
 /// Which modes of a class have its evidence: those of its fit alone, which tell nearly which class
-/// is best; or also those that the prior leads to, and beyond limits.
+/// is best, and where a line is plausible that beside what is better than any path nearly as
+/// straight; or also those that the prior leads to, beyond limits, and nearly straight paths.
 enum class ModesOf { Fit, Prior };
 
 /// Evidence of the classes fitted to the reduced points, by Laplace's formula; if a line is

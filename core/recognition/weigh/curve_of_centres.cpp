@@ -33,7 +33,7 @@ const std::optional<CanonicalFit>& CurveOfCentres::get() {
     choice.fits = fit_classes_from(starts_, sides_, centres, by_);
     choice.reduced = centres;
     choice.evidences = by_.of_paths;
-    settle_candidate(by_, ModesOf::Fit, &choice);
+    settle_candidate(by_, ModesOf::Prior, &choice);
     const bool may_turn = (kCubics & class_bit(choice.candidate)) != 0;
     const auto conic = may_turn ? conic_that_fits(choice.fits, centres, by_.work) : std::nullopt;
     const auto& best = conic ? conic : choice.settled;
