@@ -11,6 +11,7 @@
 #include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/posterior/out_of_reach.h"
+#include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/samples/work_limit.h"
 #include "core/recognition/weigh/contenders.h"
 #include "core/recognition/weigh/edges_of_part.h"
@@ -354,8 +355,14 @@ Weighing weigh_arcs(ArcsToWeigh to_weigh, std::span<const StoredPatch> patches, 
   contenders = with_edges(std::move(contenders), context, edges);
   contenders = with_near_parts(std::move(contenders), context, options.near_parts,
                                options.log_near_with_gross, margin_of(options));
+  const double log_of_normals = sided.choice().log_of_normals;
   Weighing weighing = assemble_weighing(std::move(arcs), std::move(sided), std::move(contenders),
                                         context, seen, stated, std::move(best_placed));
+  // An edge lies as well on the other side of them all. (Ways of short strokes, which travel either
+  // way, need not show it.)
+  if (weighing.best == CurveClass::Line && are_open(patches, weighing.data, weighing.reduced)) {
+    weighing.sides_margin = std::min(weighing.sides_margin, 2.0 * log_of_normals);
+  }
   weighing.unqualified_probe = options.unqualified_probe;
   return weighing;
 }

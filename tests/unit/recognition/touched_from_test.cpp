@@ -180,6 +180,38 @@ TEST(TouchedFrom, AStatedSideHoldsAgainstIt) {
   EXPECT_NEAR(bore.shape.values[0], kCentresM + kTipM, 10.0 * kSigmaM);
 }
 
+// However its strokes travel, and however short they are: with them on either side, ways by the
+// bends of their noise may leave one that fits and none that is its mirror image.
+TEST(TouchedFrom, AnEdgeUnderShortStrokesHasNoOutside) {
+  auto rng = test::test_rng();
+  std::normal_distribution<double> normal(0.0, kSigmaM);
+  for (int part = 0; part < test::stress_count(240); ++part) {
+    RecognizerOptions options;
+    options.sigma_m = part % 2 == 0 ? kSigmaM : 0.0;
+    Recognizer recognizer(options);
+    const int strokes = std::uniform_int_distribution(6, 13)(rng);
+    const int readings = std::uniform_int_distribution(1, 5)(rng);
+    for (int patch = 0; patch < strokes; ++patch) {
+      std::vector<ContactSample> stroke;
+      for (int place = 0; place < 2; ++place) {
+        const double along_m =
+            0.08 * (patch + 0.5 * place + test::uniform(rng, 0.0, 0.4)) / strokes;
+        for (int i = 0; i < readings; ++i) {
+          stroke.push_back({Vec2(along_m, kTipM) + Vec2(normal(rng), normal(rng)), 0.0, 0});
+        }
+      }
+      if (test::random_sign(rng) < 0.0) {
+        std::reverse(stroke.begin(), stroke.end());
+      }
+      recognizer.add({0, static_cast<std::uint32_t>(patch), kTipM}, stroke);
+    }
+    const Recognition answer = recognizer.recognize();
+    EXPECT_FALSE(answer.status == RecognitionStatus::Recognized &&
+                 answer.shape.curve_class == CurveClass::Line)
+        << part;
+  }
+}
+
 TEST(TouchedFrom, ALineHasNoOutside) {
   for (const TouchedFrom from : {TouchedFrom::Unknown, TouchedFrom::Outside, TouchedFrom::Inside}) {
     auto rng = test::test_rng();

@@ -159,6 +159,14 @@ std::vector<int> known_sides(std::span<const StoredPatch> patches, const FitData
   return known;
 }
 
+bool are_open(std::span<const StoredPatch> patches, const FitData& data, const FitData& reduced) {
+  const double tip = data.points.front().offset;
+  const std::vector<int> known = known_sides(patches, reduced);
+  return tip > 0.0 &&
+         std::ranges::all_of(data.points, [&](const auto& p) { return p.offset == tip; }) &&
+         std::ranges::all_of(known, [](int side) { return side == 0; });
+}
+
 PossibleSides possible_sides(std::span<const StoredPatch> patches, const FitData& reduced,
                              std::span<const double> bends, std::span<const double> senses,
                              WorkBudget& work) {

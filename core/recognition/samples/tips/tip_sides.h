@@ -28,6 +28,9 @@ std::vector<double> turns_of(const FitData& reduced);
 /// it beyond doubt or else the probe states it; 0 where it is open or there is no tip.
 std::vector<int> known_sides(std::span<const StoredPatch> patches, const FitData& reduced);
 
+/// Whether all tips are of one radius, and the side of none is known.
+bool are_open(std::span<const StoredPatch> patches, const FitData& data, const FitData& reduced);
+
 /// Ways in which the tips may lie.
 struct PossibleSides {
   /// Each has one side per patch, +1 if the tip centres lie left of travel, -1 right, 0 without a
