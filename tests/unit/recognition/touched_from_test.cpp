@@ -110,27 +110,36 @@ TEST(TouchedFrom, APinThinnerThanTheTipIsNoBore) {
   }
 }
 
+/// Two strokes on either side of an ellipse, by centres of tips outside of it.
+std::vector<std::vector<ContactSample>> strokes_outside_ellipse(std::mt19937_64& rng) {
+  std::normal_distribution<double> normal(0.0, kSigmaM);
+  const double first = test::uniform(rng, 0.0, 2.0 * kPi);
+  std::vector<std::vector<ContactSample>> strokes(2);
+  for (std::size_t patch = 0; patch < strokes.size(); ++patch) {
+    for (int i = 0; i < 40; ++i) {
+      const double t = first + 3.0 * static_cast<double>(patch) + 1.2 * i / 40.0;
+      const Vec2 outwards = Vec2(0.02 * std::cos(t), 0.03 * std::sin(t)).normalized();
+      const Vec2 place(0.03 * std::cos(t), 0.02 * std::sin(t));
+      const double x = normal(rng);
+      strokes[patch].push_back({place + kTipM * outwards + Vec2(x, normal(rng)), kSigmaM, 0});
+    }
+  }
+  return strokes;
+}
+
 // Where a conic has all centres outside its bends, as is said, nothing is sought inside: that is
 // half of all work, and an answer on few samples may take little.
 TEST(TouchedFrom, SparesTheSearchOnTheOtherSide) {
   auto rng = test::test_rng();
-  std::normal_distribution<double> normal(0.0, kSigmaM);
   double work_if_said = 0.0;
   double work_if_not = 0.0;
   for (int part = 0; part < test::stress_count(20); ++part) {
     Recognizer said(options_with(TouchedFrom::Outside));
     Recognizer not_said(options_with(TouchedFrom::Unknown));
-    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
-    for (std::uint32_t patch = 0; patch < 2; ++patch) {
-      std::vector<ContactSample> stroke;
-      for (int i = 0; i < 40; ++i) {
-        const double t = first + 3.0 * patch + 1.2 * i / 40.0;
-        const Vec2 outwards = Vec2(0.02 * std::cos(t), 0.03 * std::sin(t)).normalized();
-        const Vec2 place(0.03 * std::cos(t), 0.02 * std::sin(t));
-        stroke.push_back({place + kTipM * outwards + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
-      }
+    std::uint32_t patch = 0;
+    for (std::vector<ContactSample>& stroke : strokes_outside_ellipse(rng)) {
       said.add({0, patch, kTipM}, stroke);
-      not_said.add({0, patch, kTipM}, stroke);
+      not_said.add({0, patch++, kTipM}, stroke);
     }
     const Recognition answer = said.recognize();
     EXPECT_EQ(answer.shape.curve_class, CurveClass::Ellipse);
@@ -145,26 +154,18 @@ TEST(TouchedFrom, SparesTheSearchOnTheOtherSide) {
 // outside another: that is not what was said either.
 TEST(TouchedFrom, SparesItHoweverStrokesTravel) {
   auto rng = test::test_rng();
-  std::normal_distribution<double> normal(0.0, kSigmaM);
   double work_along = 0.0;
   double work_against = 0.0;
   for (int part = 0; part < test::stress_count(20); ++part) {
     Recognizer along(options_with(TouchedFrom::Outside));
     Recognizer against(options_with(TouchedFrom::Outside));
-    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
-    for (std::uint32_t patch = 0; patch < 2; ++patch) {
-      std::vector<ContactSample> stroke;
-      for (int i = 0; i < 40; ++i) {
-        const double t = first + 3.0 * patch + 1.2 * i / 40.0;
-        const Vec2 outwards = Vec2(0.02 * std::cos(t), 0.03 * std::sin(t)).normalized();
-        const Vec2 place(0.03 * std::cos(t), 0.02 * std::sin(t));
-        stroke.push_back({place + kTipM * outwards + Vec2(normal(rng), normal(rng)), kSigmaM, 0});
-      }
+    std::uint32_t patch = 0;
+    for (std::vector<ContactSample>& stroke : strokes_outside_ellipse(rng)) {
       along.add({0, patch, kTipM}, stroke);
       if (patch == 1) {
         std::reverse(stroke.begin(), stroke.end());
       }
-      against.add({0, patch, kTipM}, stroke);
+      against.add({0, patch++, kTipM}, stroke);
     }
     work_along += along.recognize().work.spent();
     work_against += against.recognize().work.spent();
