@@ -26,6 +26,6 @@ double work_of_clean_ellipse(std::size_t samples, std::size_t patches);
 
 /// What an answer on these patches may take; that their samples are read is counted. `patience`:
 /// times kMostWork.
-WorkBudget work_limit(std::span<const StoredPatch> patches, double patience = 1.0);
+WorkBudget work_limit(std::span<const StoredPatch> patches, double patience);
 
 }  // namespace palpate

@@ -12,70 +12,13 @@
 #include "core/recognition/samples/tips/bend_to_one_side.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"
+#include "core/recognition/weigh/directed_touches.h"
 #include "core/recognition/weigh/fit_way.h"
 #include "core/recognition/weigh/own_directions.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
 namespace {
-
-/// The reduced points with directions for those that show none, the sides to which the patches
-/// bend, and how they travel along the curve of the centres where that was needed.
-struct Directed {
-  FitData touches;
-  std::vector<double> bends;
-  std::vector<double> senses;
-  bool told;  ///< of SideContext::directions_told
-};
-
-/// Whether the way of each tip is seen.
-bool are_strokes(const FitData& touches) {
-  return std::all_of(touches.patches.begin(), touches.patches.end(),
-                     [](const PatchSpan& patch) { return patch.size() != 1; });
-}
-
-/// What the tips do not show by themselves comes from edges that their centres lie on, or from the
-/// curve of these.
-Directed directed(std::span<const StoredPatch> patches, const SideContext& by,
-                  CurveOfCentres* centres) {
-  const SmoothModel& smooth = by.arcs.smooth;
-  WorkBudget& work = by.work;
-  Directed result{smooth.reduced, {}, {}, false};
-  if (by.edges != nullptr && has_tips(result.touches.points) && are_strokes(result.touches) &&
-      fits_well(by.edges->chi2, residual_count(by.arcs.data))) {
-    result.bends = tell_directions(by.edges->corner, smooth, &result.touches, work);
-    result.senses = result.bends;
-    result.told = true;
-    return result;
-  }
-  const bool untold = has_untold_tips(smooth);
-  const bool asked = untold || has_uncertain_bends(smooth, known_sides(patches, smooth.reduced));
-  if (asked && work.allows()) {
-    if (const auto& curve = centres->get()) {
-      set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches, work);
-      if (work.allows()) {
-        result.bends = bends_of(*curve, result.touches, work);
-      }
-      if (untold && work.allows()) {
-        result.senses = senses_of(*curve, result.touches, work);
-      }
-    }
-  }
-  if (result.bends.empty()) {
-    result.bends = turns_of(result.touches);
-  }
-  auto bend = result.bends.begin();
-  for (const StoredPatch& patch : patches) {
-    if (patch.samples.empty()) {
-      continue;
-    }
-    if (!patch.direction.isZero()) {
-      *bend = patch.turn;
-    }
-    ++bend;
-  }
-  return result;
-}
 
 /// The sides on which the tips lie as the curve found has them along its own directions.
 std::vector<int> sides_found(const SideChoice& choice, const FitData& touches,
@@ -124,7 +67,7 @@ bool is_conic(CurveClass candidate) {
 class TriedWays {
  public:
   TriedWays(std::span<const StoredPatch> patches, const SideContext& by,
-            std::span<const SidedStart> starts, CurveOfCentres* centres, Directed seen)
+            std::span<const SidedStart> starts, CurveOfCentres* centres, DirectedTouches seen)
       : patches_(patches),
         by_(by),
         now_(by),
@@ -292,7 +235,7 @@ class TriedWays {
   SideContext now_;
   std::span<const SidedStart> starts_;
   CurveOfCentres& centres_;
-  Directed seen_;
+  DirectedTouches seen_;
   PossibleSides possible_;
   std::vector<SideChoice> choices_;
   /// log of the evidence of a way that all points have, with that of the normals.
@@ -370,7 +313,7 @@ void take_own_directions(const SideContext& by, SidedFits* sided) {
 SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext& by,
                          std::span<const SidedStart> starts) {
   CurveOfCentres centres(by, starts);
-  TriedWays tried(patches, by, starts, &centres, directed(patches, by, &centres));
+  TriedWays tried(patches, by, starts, &centres, directed_touches(patches, by, &centres));
   SidedFits sided;
   if (!tried.have_tips()) {
     sided.choices.push_back(tried.without_tips());
