@@ -1,9 +1,30 @@
 #include "core/curves/curve.h"
 
+#include "core/curves/all_feet.h"
 #include "core/curves/foot_point.h"
 
 namespace palpate {
 namespace {
+
+/// As foot_at_distance().
+template <typename C>
+FootPoint at_distance(const C& curve, const Vec2& point, double distance) {
+  FootPoint best = curve.foot_point(point);
+  if constexpr (requires { all_feet(curve, point); }) {
+    const auto off = [&](const FootPoint& foot) {
+      return std::abs(std::abs(foot.distance) - distance);
+    };
+    const FootPlaces feet = point.allFinite() ? all_feet(curve, point) : FootPlaces{};
+    for (std::size_t k = 0; k < feet.count; ++k) {
+      // (a cusp is among them whether or not the arms lead away from the point)
+      const FootPoint foot = foot_point_at(curve, feet.t[k], point);
+      if (is_nearest_beside(curve, feet.t[k], point) && off(foot) < off(best)) {
+        best = foot;
+      }
+    }
+  }
+  return best;
+}
 
 template <typename C>
 std::optional<Curve> make(const Eigen::Vector3d& values) {
@@ -78,6 +99,11 @@ Eigen::Matrix<double, 2, 3> position_by_parameters(const Curve& curve, double t)
 
 FootPoint foot_point(const Curve& curve, const Vec2& point) {
   return std::visit([&point](const auto& c) { return c.foot_point(point); }, curve);
+}
+
+FootPoint foot_at_distance(const Curve& curve, const Vec2& point, double distance) {
+  return std::visit([&point, distance](const auto& c) { return at_distance(c, point, distance); },
+                    curve);
 }
 
 FootPoint foot_point_near(const Curve& curve, const Vec2& point, double t_start) {

@@ -28,7 +28,8 @@ DirectedTouches directed_touches(std::span<const StoredPatch> patches, const Sid
   const bool asked = untold || has_uncertain_bends(smooth, known_sides(patches, smooth.reduced));
   if (asked && work.allows()) {
     if (const auto& curve = centres->get()) {
-      set_directions(DirectionsOf::UntoldPoints, *curve, smooth, &result.touches, work);
+      set_directions(DirectionsOf::UntoldPoints, *curve, Feet::Nearest, smooth, &result.touches,
+                     work);
       if (work.allows()) {
         result.bends = bends_of(*curve, result.touches, work);
       }

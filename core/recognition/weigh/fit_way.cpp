@@ -157,7 +157,8 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       break;
     }
     const DirectionsOf which = swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
-    if (set_directions(which, *curve, smooth, &touches, by.work) < kSettledTurn) {
+    const Feet feet = on_all || may_be_misdirected(choice, by) ? Feet::Touched : Feet::Nearest;
+    if (set_directions(which, *curve, feet, smooth, &touches, by.work) < kSettledTurn) {
       break;
     }
     FitData nearer = on_surface(touches, sides);
@@ -205,11 +206,11 @@ SideChoice judged(SideChoice choice, const SideContext& by) {
 }
 
 /// The touches with the directions of a curve; nullopt where these are settled already.
-std::optional<FitData> turned_along(const CanonicalFit& curve, const FitData& touches,
+std::optional<FitData> turned_along(const CanonicalFit& curve, Feet feet, const FitData& touches,
                                     const SideContext& by) {
   FitData turned = touches;
   const double turn =
-      set_directions(DirectionsOf::AllPoints, curve, by.arcs.smooth, &turned, by.work);
+      set_directions(DirectionsOf::AllPoints, curve, feet, by.arcs.smooth, &turned, by.work);
   return turn < kSettledTurn ? std::nullopt : std::optional(std::move(turned));
 }
 
@@ -248,7 +249,8 @@ SideChoice fit_way(const FitData& touches, std::span<const int> sides, const Sid
 
 SideChoice fit_way_along(const CanonicalFit& parallel, SideChoice choice, const FitData& touches,
                          const SideContext& by, const CurveOfCentres& centres) {
-  auto turned = by.work.allows() ? turned_along(parallel, touches, by) : std::nullopt;
+  auto turned =
+      by.work.allows() ? turned_along(parallel, Feet::Touched, touches, by) : std::nullopt;
   if (!turned) {
     return choice;
   }
@@ -276,7 +278,7 @@ SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideCo
     }
   };
   const auto take_along = [&](const CanonicalFit& curve, const WarmStart* start) {
-    if (const auto turned = turned_along(curve, touches, by)) {
+    if (const auto turned = turned_along(curve, Feet::Nearest, touches, by)) {
       take(*turned, start);
     }
   };

@@ -13,10 +13,10 @@ namespace {
 /// The curve's direction, with rising parameter, at the foot of a tip's centre (curve's frame);
 /// zero if it has none. About a cusp the tip rolls: its way is across the line to its foot, if that
 /// is longer than noise.
-Vec2 direction_at_foot(const Curve& curve, const Vec2& centre_m, double sigma_m) {
+Vec2 direction_at_foot(const Curve& curve, const FootPoint& foot, const Vec2& centre_m,
+                       double sigma_m) {
   // Of a right angle between the curve and the line to a foot, the cosine.
   constexpr double kNotAcross = 0.1;
-  const FootPoint foot = foot_point(curve, centre_m);
   const CurveDerivatives at = derivatives(curve, foot.t);
   const Vec2 away = centre_m - at.position;
   const bool at_cusp = away.norm() > kNegligibleDeviations * sigma_m &&
@@ -32,9 +32,10 @@ Vec2 direction_at_foot(const Curve& curve, const Vec2& centre_m, double sigma_m)
 /// The curve's directions at the feet of the touches' points, in their frame; zero where it has
 /// none, and where `work` is spent. Feet of the tips' centres, from which the curve is seen the
 /// same however little of it bends: a surface point that is a little off may have its foot on the
-/// other side of a sharp bend.
-std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, const FitData& touches,
-                                WorkBudget& work) {
+/// other side of a sharp bend. A surface lies a radius away from a centre: an arm that was not
+/// touched may be nearer.
+std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, Feet feet,
+                                const FitData& touches, WorkBudget& work) {
   std::vector<Vec2> directions;
   for (const FitPoint& point : touches.points) {
     if (!work.allows()) {
@@ -42,8 +43,14 @@ std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, con
       continue;
     }
     work.spend(kind_of_foot(fit.shape.curve_class), 1);
-    const Vec2 along = direction_at_foot(curve, fit.world_T_curve.to_local(world_m(touches, point)),
-                                         touches.scale / point.inverse_sigma);
+    const Vec2 centre_m = fit.world_T_curve.to_local(world_m(touches, point));
+    const double sigma_m = touches.scale / point.inverse_sigma;
+    FootPoint foot = foot_point(curve, centre_m);
+    const double least_m = point.offset * touches.scale - kNegligibleDeviations * sigma_m;
+    if (feet == Feet::Touched && std::abs(foot.distance) < least_m) {
+      foot = foot_at_distance(curve, centre_m, point.offset * touches.scale);
+    }
+    const Vec2 along = direction_at_foot(curve, foot, centre_m, sigma_m);
     directions.push_back(touches.frame.rotate_back(fit.world_T_curve.rotate(along)));
   }
   return directions;
@@ -159,15 +166,16 @@ bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides) 
   return false;
 }
 
-double set_directions(DirectionsOf which, const CanonicalFit& fit, const SmoothModel& smooth,
-                      FitData* touches, WorkBudget& work) {
+double set_directions(DirectionsOf which, const CanonicalFit& fit, Feet feet,
+                      const SmoothModel& smooth, FitData* touches, WorkBudget& work) {
   const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
-  return curve ? turn_to(directions_of(*curve, fit, *touches, work), which, smooth, touches) : 0.0;
+  return curve ? turn_to(directions_of(*curve, fit, feet, *touches, work), which, smooth, touches)
+               : 0.0;
 }
 
 void tell_directions(const CanonicalFit& curve, const SmoothModel& smooth, FitData* touches,
                      WorkBudget& work) {
-  set_directions(DirectionsOf::KeptPoints, curve, smooth, touches, work);
+  set_directions(DirectionsOf::KeptPoints, curve, Feet::Touched, smooth, touches, work);
   take_errors_of_neighbours(touches);
 }
 
@@ -194,7 +202,7 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches, Wo
   if (!curve) {
     return bends;
   }
-  const std::vector<Vec2> directions = directions_of(*curve, fit, touches, work);
+  const std::vector<Vec2> directions = directions_of(*curve, fit, Feet::Nearest, touches, work);
   for (std::size_t p = 0; p < bends.size(); ++p) {
     if (certain_turn(touches.patch(p))) {
       continue;
@@ -211,7 +219,7 @@ std::vector<double> bends_of(const CanonicalFit& fit, const FitData& touches, Wo
 std::vector<double> senses_of(const CanonicalFit& fit, const FitData& touches, WorkBudget& work) {
   std::vector<double> senses(touches.patches.size(), 0.0);
   if (const auto curve = make_curve(fit.shape.curve_class, fit.shape.values)) {
-    const std::vector<Vec2> directions = directions_of(*curve, fit, touches, work);
+    const std::vector<Vec2> directions = directions_of(*curve, fit, Feet::Nearest, touches, work);
     for (std::size_t p = 0; p < senses.size(); ++p) {
       senses[p] = sense_of(directions, touches, touches.patches[p]);
     }

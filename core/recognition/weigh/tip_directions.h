@@ -23,12 +23,17 @@ bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides);
 
 enum class DirectionsOf { UntoldPoints, KeptPoints, AllPoints };
 
+/// Of a tip's centre: the place of the curve that is nearest, or, on a surface that all centres lie
+/// beside at their radii as noise lets them, the one that was touched. That may have another arm
+/// which is nearer.
+enum class Feet { Nearest, Touched };
+
 /// Gives points of `touches` (the smooth model's reduced points) the tangents of a curve fitted to
 /// them or to a parallel curve, which has the same normals. The sense is that of the whole patch's
 /// travel along the curve; a patch that shows none gets the curve's sense. Returns the largest turn
 /// of a tangent. [rad]
-double set_directions(DirectionsOf which, const CanonicalFit& curve, const SmoothModel& smooth,
-                      FitData* touches, WorkBudget& work);
+double set_directions(DirectionsOf which, const CanonicalFit& curve, Feet feet,
+                      const SmoothModel& smooth, FitData* touches, WorkBudget& work);
 
 /// The directions of strokes' points that no polynomial follows, from a curve that all tips'
 /// centres lie on as noise lets them. Their errors are what noise turns the line between neighbours

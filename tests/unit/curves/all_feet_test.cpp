@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "core/curves/curve.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -88,6 +89,29 @@ TEST(AllFeet, AreFoundFarFromTheVertex) {
     ASSERT_GT(feet.count, 0U) << i;
     EXPECT_NEAR((*nearest - t) * at.first.norm(), 0.0, 1e-6) << i;
   }
+}
+
+/// A point beside an arm is the farther from another one, or the nearer.
+TEST(FootAtDistance, IsOnTheArmThatThePointWasSetOffFrom) {
+  auto rng = test::test_rng();
+  const std::vector<Curve> cubics{CubicalParabola{0.5, -1.0}, SemiCubicalParabola{1.0, 0.3},
+                                  CubicSpline{1.0, 0.2, 0.1}};
+  int nearer = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const Curve& curve = cubics[i % cubics.size()];
+    const double t = test::uniform(rng, -1.5, 1.5);
+    const LocalGeometry local = geometry(curve, t);
+    const double side = i % 2 == 0 ? 1.0 : -1.0;
+    // Beyond the centre of curvature the place is no nearest one.
+    const double most = side * local.kappa > 0.0 ? std::min(1.0, 0.9 / local.kappa * side) : 1.0;
+    const double distance = most * test::uniform(rng, 0.1, 1.0);
+    const Vec2 normal(-std::sin(local.tangent_angle), std::cos(local.tangent_angle));
+    const Vec2 point = position(curve, t) + side * distance * normal;
+    const double found = std::abs(foot_at_distance(curve, point, distance).distance);
+    EXPECT_NEAR(found, distance, 1e-12) << "point " << i;
+    nearer += std::abs(foot_point(curve, point).distance) < 0.9 * distance;
+  }
+  EXPECT_GT(nearer, 100);
 }
 
 }  // namespace
