@@ -14,7 +14,7 @@
 #include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/directed_touches.h"
 #include "core/recognition/weigh/fit_way.h"
-#include "core/recognition/weigh/own_directions.h"
+#include "core/recognition/weigh/taken_way.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
@@ -41,23 +41,6 @@ std::vector<int> sides_found(const SideChoice& choice, const FitData& touches,
   return sides;
 }
 
-/// Whether two ways have led to one: along their own directions single touches may lie otherwise
-/// than along those that their sides were told by.
-bool are_one_way(const SideChoice& a, const SideChoice& b, const FitData& centres) {
-  if (!a.settled || !b.settled) {
-    return false;
-  }
-  const FitData& on_a = points_of(*a.settled, a.reduced);
-  const FitData& on_b = points_of(*b.settled, b.reduced);
-  for (std::size_t i = 0; i < centres.points.size(); ++i) {
-    const Vec2& centre = centres.points[i].position;
-    if ((on_a.points[i].position - centre).dot(on_b.points[i].position - centre) < 0.0) {
-      return false;
-    }
-  }
-  return true;
-}
-
 /// A closed curve or one that bends to one side alone.
 bool is_conic(CurveClass candidate) {
   return candidate != CurveClass::Line && (class_bit(candidate) & kCubics) == 0;
@@ -73,7 +56,8 @@ class TriedWays {
         now_(by),
         starts_(starts),
         centres_(*centres),
-        seen_(std::move(seen)) {
+        seen_(std::move(seen)),
+        is_said_(by.touched_from != TouchedFrom::Unknown || any_side_is_known()) {
     if (seen_.told) {
       take_told(log_evidence_of_unclassified(by.likelihood, by.of_paths, by.arcs.smooth.chi2));
     }
@@ -133,6 +117,12 @@ class TriedWays {
   std::vector<SideChoice> take() && { return std::move(choices_); }
 
  private:
+  /// Whether any patch states its side: the others touch the same wall of a conic from there.
+  bool any_side_is_known() const {
+    const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);
+    return std::any_of(known.begin(), known.end(), [](int side) { return side != 0; });
+  }
+
   PossibleSides possible_along(const std::vector<double>& senses) const {
     return possible_sides(patches_, seen_.touches, seen_.bends, senses, by_.work);
   }
@@ -164,17 +154,19 @@ class TriedWays {
   /// take a way of overwhelming evidence to speak against both; the search of one takes as much
   /// work as the first.)
   bool is_excluded(const std::vector<int>& sides) const {
-    return by_.touched_from != TouchedFrom::Unknown && is_against_a_bend(sides) &&
+    return is_said_ && is_against_a_bend(sides) &&
            std::any_of(choices_.begin(), choices_.end(), [&](const SideChoice& choice) {
              return choice.expected && is_conic(choice.candidate) && fits_all(choice, by_);
            });
   }
 
-  /// Whether a stroke that bends beyond doubt has the tip on another side than expected.
+  /// Whether a stroke that bends beyond doubt, or a single touch, of which the curve of all tells
+  /// how it bends, has the tip on another side than expected.
   bool is_against_a_bend(const std::vector<int>& sides) const {
     const std::vector<int>& expected = possible_.ways.front();
     for (std::size_t p = 0; p < sides.size(); ++p) {
-      if (sides[p] != expected[p] && certain_turn(seen_.touches.patch(p))) {
+      const auto patch = seen_.touches.patch(p);
+      if (sides[p] != expected[p] && (patch.size() == 1 || certain_turn(patch))) {
         return true;
       }
     }
@@ -236,77 +228,12 @@ class TriedWays {
   std::span<const SidedStart> starts_;
   CurveOfCentres& centres_;
   DirectedTouches seen_;
+  bool is_said_;  ///< from where the part is touched, or a patch of it
   PossibleSides possible_;
   std::vector<SideChoice> choices_;
   /// log of the evidence of a way that all points have, with that of the normals.
   double highest_ = -std::numeric_limits<double>::infinity();
 };
-
-/// The way of the highest evidence, the expected one (from outside the bends) at the odds of the
-/// prior.
-void take_most_probable(const SideContext& by, SidedFits* sided) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  // A prior (core/README.md, "The prior"): tips that touch a part from within a bend are rare,
-  // probes come from outside. It says which of the ways that the samples allow is told, not that
-  // the others are excluded: the margin does without it.
-  constexpr double kInsideProbability = 0.01;
-  const double log_price_of_others = log_odds(1.0 - kInsideProbability);
-  // A line has no bend to be outside of.
-  const auto has_bend = [](const SideChoice& choice) {
-    return choice.candidate != CurveClass::Line;
-  };
-  // It has the tips in all bends where the expected way has them outside, or the reverse: whoever
-  // says the one rules out the other.
-  const auto is_ruled_out = [&](const SideChoice& choice) {
-    return choice.contrary && has_bend(choice) && by.touched_from != TouchedFrom::Unknown;
-  };
-  sided->taken = 0;
-  std::vector<double> evidences;  // logarithms, by what was measured and stated
-  double highest = -kInfinity;
-  for (std::size_t i = 0; i < sided->choices.size(); ++i) {
-    const SideChoice& choice = sided->choices[i];
-    evidences.push_back(choice.log_evidence + choice.log_of_normals -
-                        (is_ruled_out(choice) ? kNegligibleLogOdds : 0.0));
-    const double weighed =
-        evidences[i] - (!choice.expected && has_bend(choice) ? log_price_of_others : 0.0);
-    if (i == 0 || weighed > highest) {
-      highest = weighed;
-      sided->taken = i;
-    }
-  }
-  double second = -kInfinity;
-  for (std::size_t i = 0; i < evidences.size(); ++i) {
-    if (i != sided->taken &&
-        !are_one_way(sided->choices[i], sided->choice(), by.arcs.smooth.reduced)) {
-      second = std::max(second, evidences[i]);
-    }
-  }
-  if (sided->choices.size() > 1 && !std::isfinite(evidences[sided->taken])) {
-    sided->margin = 0.0;  // nothing tells one from another
-  } else {
-    sided->margin = std::isfinite(second) ? evidences[sided->taken] - second : kInfinity;
-  }
-  // A cubic bends to both sides: what is outside of it as a whole is not told.
-  const bool has_outside = (class_bit(sided->choice().candidate) & kCubics) == 0;
-  if (is_ruled_out(sided->choice()) && has_outside) {
-    // The samples and what was said contradict one another: neither makes the other certain.
-    sided->margin = std::min(sided->margin, 0.0);
-  }
-}
-
-/// Where a cubic leads, takes the classes of the way that is taken to where each has the tips'
-/// centres itself: samples that show no direction have that of the cubic, which may turn otherwise
-/// between the others than any conic. (Conics turn alike. Of tips that touch alone every way has it
-/// so.)
-void take_own_directions(const SideContext& by, SidedFits* sided) {
-  const SmoothModel& smooth = by.arcs.smooth;
-  SideChoice& choice = sided->choices[sided->taken];
-  if (has_kept_tips(smooth) && choice.settled && (class_bit(choice.candidate) & kCubics) != 0 &&
-      !has_lone_tips(choice.reduced, smooth) && by.work.allows()) {
-    choice.fits = along_own_directions(std::move(choice.fits), choice.reduced, choice.sides, smooth,
-                                       {}, by.work);
-  }
-}
 
 }  // namespace
 
@@ -362,7 +289,11 @@ bool rejudge_sides(const SideContext& by, SidedFits* sided) {
   }
   const std::size_t before = sided->taken;
   take_most_probable(by, sided);
-  return sided->taken != before;
+  const bool is_other = sided->taken != before;
+  if (is_other) {
+    take_own_directions(by, sided);
+  }
+  return is_other;
 }
 
 }  // namespace palpate
