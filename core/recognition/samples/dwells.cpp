@@ -238,7 +238,9 @@ std::vector<PatchSpan> held_places(std::span<const StoredSample> samples) {
     }
     begin = end;
   }
-  return places.size() > 1 && 2 * held >= samples.size() ? places : std::vector<PatchSpan>{};
+  // (one that is all of them is is_one_place()'s)
+  const bool moved = !places.empty() && places.front().size() < samples.size();
+  return moved && 2 * held >= samples.size() ? places : std::vector<PatchSpan>{};
 }
 
 bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,

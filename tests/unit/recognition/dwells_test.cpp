@@ -272,5 +272,26 @@ TEST_F(Dwells, ThatOverlapLeaveEachOtherSamplesToMerge) {
   EXPECT_GT(beside, 0U);
 }
 
+/// Where most samples of a stroke are of a place at which it stands still from early on, its speed
+/// is that of their scatter, and none of them was slower.
+TEST_F(Dwells, AHoldAfterAFewPlacesIsOnePlace) {
+  for (const std::size_t places : {1, 2, 5}) {
+    for (const double step : {20.0, 400.0, 2000.0}) {  // noises
+      SCOPED_TRACE(::testing::Message() << places << " places " << step << " noises apart");
+      StoredPatch patch;
+      for (std::size_t i = 0; i < places + 100; ++i) {
+        const double way = step * kNoise * static_cast<double>(std::min(i, places));
+        patch.samples.push_back(sample_at(on_circle(way / kPart) + noise()));
+      }
+      const StoredPatch merged = without_dwells(patch, kNoise);
+      ASSERT_EQ(merged.samples.size(), places + 1);
+      EXPECT_LT((merged.samples.back().position_m -
+                 on_circle(step * kNoise * static_cast<double>(places) / kPart))
+                    .norm(),
+                kNoise);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace palpate
