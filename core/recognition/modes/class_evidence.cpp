@@ -176,6 +176,12 @@ void set_log_all_modes(double log_all, ClassEvidence* evidence) {
 
 bool is_of_optimum(const ClassEvidence& evidence) { return evidence.log_occam <= kToldChi2; }
 
+double fall_to_mode(const ClassEvidence& evidence) {
+  return evidence.nodes.empty()
+             ? 0.0
+             : std::max(evidence.fitted_chi2 - evidence.nodes[evidence.mode].curve.chi2, 0.0);
+}
+
 std::optional<ClassEvidence> evidence_of(const CanonicalFit& fit, const FitData& data,
                                          double inflation, WorkBudget& work) {
   auto touch = touch_of(fit, data);

@@ -53,6 +53,10 @@ void set_log_all_modes(double log_all, ClassEvidence* evidence);
 /// optimum.
 bool is_of_optimum(const ClassEvidence& evidence);
 
+/// By how much less chi-square the mode leaves than the fit that `log_occam` counts from, which
+/// then was not the optimum; else 0.
+double fall_to_mode(const ClassEvidence& evidence);
+
 /// The evidence by Laplace's formula, a normal law about the optimum. `fit` must be at its optimum
 /// on `data`, the reduced points as surface points, with one point for each. Noise variances are
 /// multiplied by `inflation`. nullopt if double precision cannot hold the fit in canonical

@@ -67,10 +67,14 @@ const ClassEvidence* known_of(const Evidences& evidences, CurveClass curve_class
 double log_evidence(const Likelihood& likelihood, const Evidences& evidences,
                     CurveClass curve_class, double chi2) {
   const auto& evidence = evidences.classes[curve_class];
-  const double about_fit =
-      evidence && std::isfinite(chi2)
-          ? likelihood.log_evidence(chi2, evidence->log_occam, evidence->determined)
-          : kNoEvidence;
+  double about_fit = kNoEvidence;
+  if (evidence && std::isfinite(chi2)) {
+    // Of a fit that a mode of the prior leaves behind: where residuals tell the noise, chi-square
+    // that falls by so much is worth less than half of it.
+    const double fall = fall_to_mode(*evidence);
+    about_fit = likelihood.log_evidence(std::max(chi2 - evidences.inflation * fall, 0.0),
+                                        evidence->log_occam - 0.5 * fall, evidence->determined);
+  }
   return std::max(about_fit, evidences.log_straight[curve_class]) +
          evidences.log_shared[curve_class];
 }

@@ -250,5 +250,31 @@ TEST(UnstatedNoise, OfCoarseStrokesRoundAnEllipseIsNotTheSizeOfTheirSteps) {
   }
 }
 
+// One stroke of ten samples over a fifth of a nearly round ellipse. The search leaves a
+// semi-cubical parabola at a poor fit, and its prior leads to a place that leaves a tenth as much.
+// By the noise of the poor fit that was worth e^48 and not a power of what is left: of 1 to 3 of
+// 100 parts that class was certain.
+TEST(UnstatedNoise, OfAPoorFitDoesNotWeighABetterMode) {
+  std::mt19937_64 rng = test::test_rng();
+  constexpr double kNoise_m = 4e-6;
+  constexpr double kImprobable = 1e-4;
+  const int parts = test::stress_count(300);
+  int improbable = 0;
+  for (int i = 0; i < parts; ++i) {
+    const double first = test::uniform(rng, 0.0, 2.0 * kPi);
+    std::vector<Vec2> exact;
+    for (int k = 0; k < 10; ++k) {
+      const double t = first + 0.4 * kPi * k / 9.0;
+      exact.emplace_back(12.5e-3 * std::cos(t), 11.1e-3 * std::sin(t));
+    }
+    test::Scene scene;
+    scene.patches.push_back(test::with_noise(exact, kNoise_m, rng));
+    const Recognition answer = test::recognise(scene, 0.0);
+    const Hypothesis* truth = test::hypothesis_of(answer, CurveClass::Ellipse);
+    improbable += truth == nullptr || truth->probability < kImprobable ? 1 : 0;
+  }
+  EXPECT_LE(improbable, test::most_of_poisson(kImprobable * parts));
+}
+
 }  // namespace
 }  // namespace palpate
