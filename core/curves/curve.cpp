@@ -1,5 +1,7 @@
 #include "core/curves/curve.h"
 
+#include <cmath>
+
 #include "core/curves/all_feet.h"
 #include "core/curves/foot_point.h"
 
