@@ -10,13 +10,16 @@ namespace {
 
 /// As foot_at_distance().
 template <typename C>
-FootPoint at_distance(const C& curve, const Vec2& point, double distance) {
+FootPoint at_distance(const C& curve, const Vec2& point, double distance, double tolerance) {
   FootPoint best = curve.foot_point(point);
   if constexpr (requires { all_feet(curve, point); }) {
+    if (!(std::abs(best.distance) < distance - tolerance)) {
+      return best;
+    }
     const auto off = [&](const FootPoint& foot) {
       return std::abs(std::abs(foot.distance) - distance);
     };
-    const FootPlaces feet = point.allFinite() ? all_feet(curve, point) : FootPlaces{};
+    const FootPlaces feet = all_feet(curve, point);
     for (std::size_t k = 0; k < feet.count; ++k) {
       // (a cusp is among them whether or not the arms lead away from the point)
       const FootPoint foot = foot_point_at(curve, feet.t[k], point);
@@ -103,8 +106,9 @@ FootPoint foot_point(const Curve& curve, const Vec2& point) {
   return std::visit([&point](const auto& c) { return c.foot_point(point); }, curve);
 }
 
-FootPoint foot_at_distance(const Curve& curve, const Vec2& point, double distance) {
-  return std::visit([&point, distance](const auto& c) { return at_distance(c, point, distance); },
+FootPoint foot_at_distance(const Curve& curve, const Vec2& point, double distance,
+                           double tolerance) {
+  return std::visit([&](const auto& c) { return at_distance(c, point, distance, tolerance); },
                     curve);
 }
 

@@ -39,10 +39,11 @@ Eigen::Matrix<double, 2, 3> position_by_parameters(const Curve& curve, double t)
 /// Nearest point of the whole curve.
 FootPoint foot_point(const Curve& curve, const Vec2& point);
 
-/// Of the places that are nearer to the point than those beside them, the one whose distance is
-/// closest to `distance`, > 0. A cubic may have another arm that is nearer. Of other classes the
-/// nearest point. [m]
-FootPoint foot_at_distance(const Curve& curve, const Vec2& point, double distance);
+/// Nearest point of the whole curve, unless it is nearer than `distance` by more than `tolerance`
+/// [m]. A cubic may have another arm that is nearer: then, of the places that are nearer to the
+/// point than those beside them, the one whose distance is closest to `distance`.
+FootPoint foot_at_distance(const Curve& curve, const Vec2& point, double distance,
+                           double tolerance);
 
 /// The foot that Newton's method reaches from `t_start` in a few steps; the nearest point of the
 /// whole curve where that fails. For callers that track t from sample to sample

@@ -56,8 +56,7 @@ class TriedWays {
         now_(by),
         starts_(starts),
         centres_(*centres),
-        seen_(std::move(seen)),
-        is_said_(by.touched_from != TouchedFrom::Unknown || any_side_is_known()) {
+        seen_(std::move(seen)) {
     if (seen_.told) {
       take_told(log_evidence_of_unclassified(by.likelihood, by.of_paths, by.arcs.smooth.chi2));
     }
@@ -154,7 +153,8 @@ class TriedWays {
   /// take a way of overwhelming evidence to speak against both; the search of one takes as much
   /// work as the first.)
   bool is_excluded(const std::vector<int>& sides) const {
-    return is_said_ && is_against_a_bend(sides) &&
+    return is_against_a_bend(sides) &&
+           (by_.touched_from != TouchedFrom::Unknown || any_side_is_known()) &&
            std::any_of(choices_.begin(), choices_.end(), [&](const SideChoice& choice) {
              return choice.expected && is_conic(choice.candidate) && fits_all(choice, by_);
            });
@@ -228,7 +228,6 @@ class TriedWays {
   std::span<const SidedStart> starts_;
   CurveOfCentres& centres_;
   DirectedTouches seen_;
-  bool is_said_;  ///< from where the part is touched, or a patch of it
   PossibleSides possible_;
   std::vector<SideChoice> choices_;
   /// log of the evidence of a way that all points have, with that of the normals.
@@ -289,11 +288,11 @@ bool rejudge_sides(const SideContext& by, SidedFits* sided) {
   }
   const std::size_t before = sided->taken;
   take_most_probable(by, sided);
-  const bool is_other = sided->taken != before;
-  if (is_other) {
-    take_own_directions(by, sided);
+  if (sided->taken == before) {
+    return false;
   }
-  return is_other;
+  take_own_directions(by, sided);
+  return true;
 }
 
 }  // namespace palpate

@@ -85,13 +85,13 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
   }
   const SideChoice& taken = sided->choice();
   const JudgedWay& way = ways[sided->taken];
-  sided->margin = kInfinity;
-  for (std::size_t i = 0; i < ways.size(); ++i) {
+  const bool has_evidence = std::isfinite(way.measured);
+  // Of several without any, nothing tells one from another.
+  sided->margin = has_evidence || ways.size() == 1 ? kInfinity : 0.0;
+  for (std::size_t i = 0; has_evidence && i < ways.size(); ++i) {
     const SideChoice& other = sided->choices[i];
-    if (!std::isfinite(way.measured)) {
-      sided->margin = ways.size() > 1 ? 0.0 : kInfinity;  // nothing tells one from another
-    } else if (i != sided->taken && std::isfinite(ways[i].measured) &&
-               !are_one_way(other, taken, by.arcs.smooth.reduced)) {
+    if (i != sided->taken && std::isfinite(ways[i].measured) &&
+        !are_one_way(other, taken, by.arcs.smooth.reduced)) {
       sided->margin =
           std::min(sided->margin, margin_over(way, ways[i], other.candidate == taken.candidate));
     }

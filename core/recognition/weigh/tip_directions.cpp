@@ -45,11 +45,9 @@ std::vector<Vec2> directions_of(const Curve& curve, const CanonicalFit& fit, Fee
     work.spend(kind_of_foot(fit.shape.curve_class), 1);
     const Vec2 centre_m = fit.world_T_curve.to_local(world_m(touches, point));
     const double sigma_m = touches.scale / point.inverse_sigma;
-    FootPoint foot = foot_point(curve, centre_m);
-    const double least_m = point.offset * touches.scale - kNegligibleDeviations * sigma_m;
-    if (feet == Feet::Touched && std::abs(foot.distance) < least_m) {
-      foot = foot_at_distance(curve, centre_m, point.offset * touches.scale);
-    }
+    const double away_m = feet == Feet::Touched ? point.offset * touches.scale : 0.0;
+    const FootPoint foot =
+        foot_at_distance(curve, centre_m, away_m, kNegligibleDeviations * sigma_m);
     const Vec2 along = direction_at_foot(curve, foot, centre_m, sigma_m);
     directions.push_back(touches.frame.rotate_back(fit.world_T_curve.rotate(along)));
   }

@@ -107,7 +107,7 @@ TEST(FootAtDistance, IsOnTheArmThatThePointWasSetOffFrom) {
     const double distance = most * test::uniform(rng, 0.1, 1.0);
     const Vec2 normal(-std::sin(local.tangent_angle), std::cos(local.tangent_angle));
     const Vec2 point = position(curve, t) + side * distance * normal;
-    const double found = std::abs(foot_at_distance(curve, point, distance).distance);
+    const double found = std::abs(foot_at_distance(curve, point, distance, 0.0).distance);
     EXPECT_NEAR(found, distance, 1e-12) << "point " << i;
     nearer += std::abs(foot_point(curve, point).distance) < 0.9 * distance;
   }
