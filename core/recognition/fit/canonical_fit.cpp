@@ -1,6 +1,7 @@
 #include "core/recognition/fit/canonical_fit.h"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -152,6 +153,9 @@ double parameter_of(const ShapeParameters& shape, const Vec2& local) {
   }
 }
 
+/// A residual by [x; y; theta; shape], over noise.
+using ResidualRow = Eigen::Matrix<double, 6, 1>;
+
 /// Near the foot of a point, all in the curve's frame.
 NormalAtFoot curve_at(const Curve& curve, double t, const Vec2& point) {
   const CurveDerivatives at = derivatives(curve, t);
@@ -187,7 +191,8 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
 /// without do not pay.
 [[gnu::noinline]] void add_normals(const Curve& curve, const Pose2& frame_T_curve,
                                    const FitData& data, CanonicalFit* fit,
-                                   Eigen::Matrix<double, 6, 6>* pose_first) {
+                                   Eigen::Matrix<double, 6, 6>* pose_first,
+                                   std::vector<ResidualRow>* rows) {
   constexpr double kStep = 1e-5;  // of the extent: right to its square
   const Eigen::Matrix2d curve_R_frame = Eigen::Rotation2Dd(-frame_T_curve.theta).toRotationMatrix();
   const Eigen::Matrix2d world_R_curve =
@@ -206,12 +211,13 @@ Eigen::Matrix<double, 6, 1> turn_by_pose_and_shape(const Curve& curve, double t,
     fitted.normal_weight = normal_weight(point, data.scale * at.turn_along());
     fitted.normal_residual =
         fitted.normal_weight * normal_miss(curve_R_frame * point.normal, at.normal);
-    const Eigen::Matrix<double, 6, 1> row =
+    const ResidualRow row =
         fitted.normal_weight *
         turn_by_pose_and_shape(curve, fitted.t, at, world_R_curve, kStep * data.scale / at.speed());
     for (int k = 0; k < 6; ++k) {
       pose_first->col(k) += row[k] * row;
     }
+    if (rows != nullptr) rows->push_back(row);
   }
 }
 
@@ -249,6 +255,7 @@ InverseInformation inverse_of_rank(const ShapePoseCovariance& information, int r
   for (Eigen::Index i = 0; i < n; ++i) {
     result.log_determinant -= scale[i] > 0.0 ? 2.0 * std::log(scale[i]) : 0.0;
   }
+  result.weakest = eigen.values[n - rank];
   for (Eigen::Index k = n - rank; k < n; ++k) {
     // Rounding leaves the weakest direction no smaller than this; beyond it the variance is as good
     // as infinite, and says so by its size.
@@ -281,6 +288,32 @@ InverseInformation inverse_information(const ShapePoseCovariance& information,
   return inverse;
 }
 
+namespace {
+
+/// The covariance of [pose; shape] from the rows themselves: a product of them has lost what its
+/// weakest direction is, if that is below the root of epsilon. Beside a cubical parabola, with the
+/// vertex far away, a spline's shape and pose make up for one another to many digits. Six rows at
+/// least. Not finite where they do not tell all.
+Eigen::Matrix<double, 6, 6> covariance_from_rows(const std::vector<ResidualRow>& rows) {
+  assert(rows.size() >= 6);
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, 6>;
+  Rows scaled(static_cast<Eigen::Index>(rows.size()), 6);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    scaled.row(static_cast<Eigen::Index>(i)) = rows[i].transpose();
+  }
+  const Eigen::Matrix<double, 6, 1> scale = scaled.colwise().norm().cwiseInverse().transpose();
+  scaled *= scale.asDiagonal();
+  const Eigen::ColPivHouseholderQR<Rows> qr(scaled);
+  const Eigen::Matrix<double, 6, 6> root = qr.matrixR().topRows<6>();
+  const Eigen::Matrix<double, 6, 6> permuted =
+      root.triangularView<Eigen::Upper>().solve(Eigen::Matrix<double, 6, 6>::Identity());
+  const Eigen::Matrix<double, 6, 6> inverse =
+      scale.asDiagonal() * (qr.colsPermutation() * permuted).eval();
+  return inverse * inverse.transpose();
+}
+
+}  // namespace
+
 std::optional<CanonicalPlace> canonical_place(const ClassFit& fit, const FitData& data) {
   const auto placement = placed_in_world(fit, data);
   return placement ? std::optional<CanonicalPlace>({placement->shape, placement->world_T_curve})
@@ -297,7 +330,8 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   CanonicalFit canonical;
   canonical.shape = placement->shape;
   canonical.world_T_curve = placement->world_T_curve;
-  if (fit.curve_class == CurveClass::CubicSpline) {
+  const bool is_spline = fit.curve_class == CurveClass::CubicSpline;
+  if (is_spline) {
     canonical.polynomial = fit.polynomial->coefficients;
   }
   const Pose2& frame_T_curve = placement->frame_T_curve;
@@ -311,6 +345,11 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
   const Eigen::Matrix2d curve_R_frame = Eigen::Rotation2Dd(-frame_T_curve.theta).toRotationMatrix();
   const Eigen::Matrix2d world_R_frame = Eigen::Rotation2Dd(data.frame.theta).toRotationMatrix();
   canonical.points.reserve(data.points.size());
+  std::vector<ResidualRow> rows;  // a spline's
+  // Far away from its vertex shape and pose may have lost so many digits that they are another
+  // curve.
+  constexpr double kHeld = 0.1;  // of a deviation, at any foot
+  bool is_held = true;
   const int side = fit.implicit ? fit.implicit->side : fit.polynomial->side;
   for (std::size_t i = 0; i < data.points.size(); ++i) {
     const FitPoint& point = data.points[i];
@@ -325,6 +364,7 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
       local = curve_R_frame * (data.scale * foot - frame_T_curve.translation());
       fitted.t = parameter_of(canonical.shape, local);
     } else {
+      const auto& c = fit.polynomial->coefficients;
       const double t = fit.polynomial->t[i];
       fitted.polynomial_t = t;
       fitted.t = placement->t_scale * t + placement->t_shift;
@@ -332,12 +372,16 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
       distance = placed.signed_distance;
       fitted.normal = placed.normal;
       local = position(*curve, fitted.t);
+      if (is_spline) {
+        const Vec2 held = frame_T_curve * local - data.scale * position_at(c, t);
+        is_held = is_held && held.norm() * point.inverse_sigma <= kHeld * data.scale;
+      }
     }
     fitted.residual = (distance - side * point.offset) * point.inverse_sigma;
 
     const Vec2 local_normal = curve_R_frame * fitted.normal;
     fitted.normal = world_R_frame * fitted.normal;
-    Eigen::Matrix<double, 6, 1> row;
+    ResidualRow row;
     row[0] = fitted.normal.x();
     row[1] = fitted.normal.y();
     row[2] = canonical.shape.curve_class == CurveClass::Circle ? 0.0  // a circle turns into itself
@@ -347,19 +391,35 @@ std::optional<CanonicalFit> to_canonical(const ClassFit& fit, const FitData& dat
     for (int k = 0; k < 6; ++k) {
       pose_first.col(k) += row[k] * row;
     }
+    if (is_spline) rows.push_back(row);
     canonical.points.push_back(fitted);
   }
   if (residual_count(data) > data.points.size()) {
-    add_normals(*curve, frame_T_curve, data, &canonical, &pose_first);
+    add_normals(*curve, frame_T_curve, data, &canonical, &pose_first, is_spline ? &rows : nullptr);
   }
-  ShapePoseCovariance information(n, n);
-  information.topLeftCorner(letters, letters) = pose_first.block(3, 3, letters, letters);
-  information.topRightCorner(letters, 3) = pose_first.block(3, 0, letters, 3);
-  information.bottomLeftCorner(3, letters) = pose_first.block(0, 3, 3, letters);
-  information.bottomRightCorner<3, 3>() = pose_first.topLeftCorner<3, 3>();
-  canonical.covariance =
-      inverse_information(information, canonical.shape.curve_class, canonical.world_T_curve.theta)
-          .covariance;
+  const auto shape_first = [&](const Eigen::Matrix<double, 6, 6>& of) {
+    ShapePoseCovariance result(n, n);
+    result.topLeftCorner(letters, letters) = of.block(3, 3, letters, letters);
+    result.topRightCorner(letters, 3) = of.block(3, 0, letters, 3);
+    result.bottomLeftCorner(3, letters) = of.block(0, 3, 3, letters);
+    result.bottomRightCorner<3, 3>() = of.topLeftCorner<3, 3>();
+    return result;
+  };
+  if (!is_held || (is_spline && rows.size() < 6)) {
+    canonical.covariance = untold_covariance(n);
+    return canonical;
+  }
+  // Rounding leaves the weakest eigenvalue off by about epsilon: then it is right to a millionth.
+  constexpr double kTold = 1e6 * std::numeric_limits<double>::epsilon();
+  const InverseInformation inverse = inverse_information(
+      shape_first(pose_first), canonical.shape.curve_class, canonical.world_T_curve.theta);
+  canonical.covariance = inverse.covariance;
+  if (is_spline && inverse.weakest < kTold) {
+    canonical.covariance = shape_first(covariance_from_rows(rows));
+    if (!canonical.covariance.allFinite()) {
+      canonical.covariance = untold_covariance(n);
+    }
+  }
   return canonical;
 }
 

@@ -46,6 +46,9 @@ ShapePoseCovariance untold_covariance(Eigen::Index n);
 struct InverseInformation {
   ShapePoseCovariance covariance;
   double log_determinant = 0.0;  ///< of the information, without the free directions
+  /// Least eigenvalue of the information scaled to a diagonal of ones, of those directions: what
+  /// rounding leaves of it is off by about epsilon.
+  double weakest = 0.0;
 };
 /// `theta`: the pose's.
 InverseInformation inverse_information(const ShapePoseCovariance& information,

@@ -126,7 +126,10 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
     set(polynomial_class(CurveClass::CubicalParabola, *polynomials.cubical_parabola));
   }
   if (polynomials.semi_cubical_parabola) {
-    set(polynomial_class(CurveClass::SemiCubicalParabola, *polynomials.semi_cubical_parabola));
+    ClassFit fit =
+        polynomial_class(CurveClass::SemiCubicalParabola, *polynomials.semi_cubical_parabola);
+    fit.rival = std::move(polynomials.other_cusp);
+    set(std::move(fit));
   }
   if (polynomials.cubic_spline) {
     ClassFit fit = polynomial_class(CurveClass::CubicSpline, *polynomials.cubic_spline);
@@ -177,6 +180,12 @@ const std::optional<PolynomialFit>& polynomial_of(CurveClass curve_class,
   }
 }
 
+/// Of the carried polynomials the rival of a class.
+const std::optional<PolynomialFit>& rival_of(CurveClass curve_class,
+                                             const PolynomialFits& carried) {
+  return curve_class == CurveClass::SemiCubicalParabola ? carried.other_cusp : carried.rival;
+}
+
 /// Fits to few of the points as they are on all of them.
 ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all, WorkBudget& work) {
   work.spend(WorkKind::PlacedRow, fits.size() * all.points.size());
@@ -189,7 +198,7 @@ ClassFits placed_on(ClassFits fits, const FitData& few, const FitData& all, Work
       fit->polynomial = placed_on(all.points, *polynomial_of(fit->curve_class, carried));
       fit->chi2 = fit->polynomial->chi2;
       if (fit->rival) {
-        fit->rival = placed_on(all.points, *carried.rival);
+        fit->rival = placed_on(all.points, *rival_of(fit->curve_class, carried));
       }
     }
   }
@@ -234,7 +243,7 @@ ClassFits settled_from_feet(const ClassFits& found, const FitData& few, const Fi
       ClassFit start = *fit;
       start.polynomial = with_feet(*polynomial_of(fit->curve_class, carried));
       if (fit->rival && fits_well(fit->rival->chi2, residuals)) {
-        start.rival = with_feet(*carried.rival);
+        start.rival = with_feet(*rival_of(fit->curve_class, carried));
       } else {
         start.rival.reset();
       }

@@ -33,7 +33,8 @@ struct ClassFit {
   std::optional<ImplicitFit> implicit;      ///< line, circle, ellipse, hyperbola
   std::optional<PolynomialFit> polynomial;  ///< parabola and the cubics
   /// A spline's optimum on the other side of c = 0; of few touches, the second best of all. If it
-  /// fits as well, the shape is not known.
+  /// fits as well, the shape is not known. As a search leaves it, a semi-cubical parabola's that
+  /// opens the other way (weigh/probable_cusp.h).
   std::optional<PolynomialFit> rival;
   /// The surface points that the fit is of, where tips were taken off along the class's own
   /// directions; nullptr: those that all classes share.

@@ -5,6 +5,7 @@
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/polynomial_foot.h"
+#include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
 
@@ -24,6 +25,20 @@ std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& da
   for (double& t : fit.polynomial->t) {
     t -= *vertex;
   }
+  auto found = polish(fit, data, work);
+  if (found) {
+    found->polished = true;
+  }
+  return found;
+}
+
+std::optional<ClassFit> spline_from_limit(const ClassFit& limit, const FitData& data,
+                                          WorkBudget& work) {
+  ClassFit fit;
+  fit.curve_class = CurveClass::CubicSpline;
+  fit.chi2_of_all = fit.on_all = true;
+  fit.polynomial = limit.polynomial;
+  normalise_parameter(PolynomialModel::CubicSpline, &*fit.polynomial);
   auto found = polish(fit, data, work);
   if (found) {
     found->polished = true;

@@ -23,6 +23,9 @@ struct PolynomialFits {
   /// The spline's second best optimum, on the other side of c = 0 or in another valley, if one was
   /// found.
   std::optional<PolynomialFit> rival;
+  /// A semi-cubical parabola that opens the other way and fits about as well: an arc of one arm is
+  /// often nearly one of another.
+  std::optional<PolynomialFit> other_cusp;
   /// For a few of the points: the nearest conic, the only start.
   std::optional<ConicCoefficients> conic;
   PolynomialSeeds seeds;    ///< starts of the search

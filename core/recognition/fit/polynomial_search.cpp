@@ -95,6 +95,31 @@ std::optional<PolynomialFit> best_of(std::vector<AxisFit>* seeds, const FitData&
   return best;
 }
 
+/// Of the walked semi-cubical parabolas the first that opens another way than the best, refined, if
+/// both fit; nullopt if there is none such. An arc of one arm is nearly an arc of another, so that
+/// noise may make the less probable one fit better.
+std::optional<PolynomialFit> other_cusp_of(const std::vector<AxisFit>& walked,
+                                           const std::optional<PolynomialFit>& best,
+                                           const FitData& reduced, double out_of_reach,
+                                           WorkBudget& work) {
+  const std::size_t residuals = residual_count(reduced);
+  if (!best || !fits_well(best->chi2, residuals)) {
+    return std::nullopt;
+  }
+  // The square of t is along the axis, and across it as well; its third power is across alone.
+  const Vec2 across(best->coefficients.col(3));
+  const Vec2 axis =
+      std::copysign(1.0, cross(Vec2(best->coefficients.col(2)), across)) * -left_of(across);
+  const auto other = std::find_if(walked.begin(), walked.end(), [&](const AxisFit& fit) {
+    return Vec2(std::cos(fit.theta), std::sin(fit.theta)).dot(axis) < 0.0;
+  });
+  if (other == walked.end() || !work.allows()) {
+    return std::nullopt;
+  }
+  PolynomialFit fit = refined(*other, reduced, out_of_reach, work);
+  return fit.chi2 <= best->chi2 + kHopelessRival ? std::optional(std::move(fit)) : std::nullopt;
+}
+
 /// The spline on the other side of c = 0.
 PolynomialFit refined_twin(const AxisFit& walked, const FitData& reduced, double out_of_reach,
                            WorkBudget& work) {
@@ -278,6 +303,8 @@ PolynomialFits search_polynomials(const FitData& reduced, bool line_fits, double
   fits.cubical_parabola = best_of(&fits.seeds.cubical_parabola, reduced, out_of_reach, work);
   fits.semi_cubical_parabola =
       best_of(&fits.seeds.semi_cubical_parabola, reduced, out_of_reach, work);
+  fits.other_cusp = other_cusp_of(fits.seeds.semi_cubical_parabola, fits.semi_cubical_parabola,
+                                  reduced, out_of_reach, work);
   SplinePair pair = fit_spline(fits.seeds.cubic_spline, reduced, out_of_reach, work);
   fits.cubic_spline = std::move(pair.best);
   fits.rival = std::move(pair.rival);
@@ -324,6 +351,7 @@ PolynomialFits follow_polynomials(const FitData& reduced, const PolynomialFits& 
   fits.cubical_parabola = follow(starts.cubical_parabola, PolynomialModel::CubicalParabola);
   fits.semi_cubical_parabola =
       follow(starts.semi_cubical_parabola, PolynomialModel::SemiCubicalParabola);
+  fits.other_cusp = follow(starts.other_cusp, PolynomialModel::SemiCubicalParabola);
   fits.cubic_spline = follow(starts.cubic_spline, PolynomialModel::CubicSpline);
   // Where it was: whether it is a rival, only a spline that comes out best has to ask.
   if (starts.rival && fits.cubic_spline) {

@@ -79,6 +79,13 @@ void start_semi_cubical_from_spline(const FitData& reduced, double out_of_reach,
   }
 }
 
+PolynomialFit semi_cubical_from(const PolynomialFit& spline, const FitData& reduced,
+                                double out_of_reach, WorkBudget& work) {
+  return refine_polynomial(PolynomialModel::SemiCubicalParabola, reduced.points,
+                           semi_cubical_at(spline, reduced.points), kSurfacePoints,
+                           coarse(out_of_reach), work);
+}
+
 void start_cubical_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
                                WorkBudget& work) {
   std::optional<PolynomialFit>& limit = fits->cubical_parabola;

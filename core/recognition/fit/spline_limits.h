@@ -17,6 +17,10 @@ void start_spline_from_limits(const FitData& reduced, double highest_chi2, doubl
 void start_semi_cubical_from_spline(const FitData& reduced, double out_of_reach,
                                     PolynomialFits* fits, WorkBudget& work);
 
+/// The semi-cubical parabola next to a spline, refined from there.
+PolynomialFit semi_cubical_from(const PolynomialFit& spline, const FitData& reduced,
+                                double out_of_reach, WorkBudget& work);
+
 /// The same of the cubical parabola, of a spline whose vertex is far away: along its axis.
 void start_cubical_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
                                WorkBudget& work);

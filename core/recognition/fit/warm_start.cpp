@@ -128,6 +128,9 @@ WarmStart warm_start_from(const ClassFits& fits, const FitData& reduced) {
   if (const auto& spline = fits[CurveClass::CubicSpline]) {
     warm.polynomials.rival = spline->rival;
   }
+  if (const auto& cusp = fits[CurveClass::SemiCubicalParabola]) {
+    warm.polynomials.other_cusp = cusp->rival;
+  }
   return warm;
 }
 
@@ -140,6 +143,7 @@ PolynomialFits carried_to(const WarmStart& warm, const FitData& reduced) {
   starts.semi_cubical_parabola = carried(warm.polynomials.semi_cubical_parabola, warm, reduced);
   starts.cubic_spline = carried(warm.polynomials.cubic_spline, warm, reduced);
   starts.rival = carried(warm.polynomials.rival, warm, reduced);
+  starts.other_cusp = carried(warm.polynomials.other_cusp, warm, reduced);
   return starts;
 }
 

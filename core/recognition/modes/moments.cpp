@@ -6,6 +6,7 @@
 
 #include "core/curves/curve.h"
 #include "core/numerics/matrices/small_cholesky.h"
+#include "core/numerics/probability/negligible.h"
 #include "core/recognition/modes/mode_search.h"
 
 namespace palpate {
@@ -126,10 +127,12 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
 
   Eigen::Matrix<double, 6, 6> moment = Eigen::Matrix<double, 6, 6>::Zero();
   const std::vector<double> shares = likelihood_shares(evidence.nodes);
+  double untold = 0.0;  // of slices so far along the valley that shape and pose do not hold them
   for (std::size_t i = 0; i < shares.size(); ++i) {
     const TouchedCurve& curve = evidence.nodes[i].curve;
     const auto x = shape_pose_at(touch, curve.z);
     if (!x) {
+      untold += shares[i];
       continue;
     }
     const TouchedMatrix root = root_of(curve, evidence.widest);
@@ -145,8 +148,9 @@ ShapePoseCovariance second_moment(const CanonicalFit& estimate, const ClassEvide
     moment.col(letters + 2).setZero();
   }
   // The valley runs on to where a double ends: it tells nothing.
-  return moment.allFinite() ? ShapePoseCovariance(moment.topLeftCorner(n, n))
-                            : untold_covariance(n);
+  return moment.allFinite() && untold <= kNegligibleProbability
+             ? ShapePoseCovariance(moment.topLeftCorner(n, n))
+             : untold_covariance(n);
 }
 
 Eigen::Matrix<double, 6, 6> shape_pose_by_coordinates(const ClassEvidence& evidence,
@@ -180,6 +184,9 @@ std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covaria
 ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
                               const ShapePoseCovariance& bound_on_reduced,
                               const ShapePoseCovariance& moment) {
+  if (!bound.allFinite()) {  // the estimate itself is not held
+    return bound;
+  }
   return bend_added(bound, bound_on_reduced, moment).value_or(moment);
 }
 

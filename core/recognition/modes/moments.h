@@ -27,7 +27,8 @@ std::optional<ShapePoseCovariance> bend_added(const ShapePoseCovariance& covaria
                                               const ShapePoseCovariance& moment);
 
 /// The bound of all points plus what the valley's moment adds to the bound of the reduced points,
-/// which carry slightly less information. If that is not a covariance, the moment itself.
+/// which carry slightly less information. If that is not a covariance, the moment itself; an
+/// infinite bound stays one.
 ShapePoseCovariance with_bend(const ShapePoseCovariance& bound,
                               const ShapePoseCovariance& bound_on_reduced,
                               const ShapePoseCovariance& moment);

@@ -142,10 +142,65 @@ void follow_all_points(CurveClass i, const EvidenceContext& context, Contenders*
   auto& evidence = contenders->evidences.classes[i];
   const auto before = std::exchange(evidence, std::nullopt);
   weigh_on_reduced(i, context, contenders);
-  if (before && before->prior_mode_sought) {
-    evidence = evidence ? at_better_mode(*std::move(evidence), *before)
-                        : counted_from(coarse.chi2 / context.likelihood.inflation(), *before);
+  if (!before || !before->prior_mode_sought) {
+    return;
   }
+  // A mode that leaves less of the reduced points is of the valley that all points have left.
+  const double here = coarse.chi2 / context.likelihood.inflation();
+  const double of_mode = before->nodes[before->mode].curve.chi2;
+  if (!evidence) {
+    evidence = counted_from(std::min(here, of_mode), *before);
+  } else if (of_mode >= here - kLeastError) {
+    evidence = at_better_mode(*std::move(evidence), *before);
+  }
+}
+
+/// A spline can be no worse than its limits: where all points leave less of one than of the spline
+/// that the reduced points led to, it is sought from there. If these tell of a far better one that
+/// all points were not led to, what is found is not known to be the best.
+void seek_spline_from_limits(const EvidenceContext& context, Contenders* contenders) {
+  constexpr auto kSpline = CurveClass::CubicSpline;
+  constexpr double kTenfold = 4.6;  // of chi-square: odds change tenfold by 2 ln 10
+  auto& spline = contenders->fits[kSpline];
+  const auto& coarse = contenders->coarse[kSpline];
+  if (!spline || !spline->chi2_of_all || !coarse) {
+    return;
+  }
+  const double most = coarse->chi2 + context.arcs.smooth.chi2 + kTenfold;
+  bool found_any = false;
+  for (const CurveClass i :
+       {CurveClass::CubicalParabola, CurveClass::SemiCubicalParabola, CurveClass::Parabola}) {
+    const auto& limit = contenders->fits[i];
+    if (!limit || !limit->on_all || spline->chi2 <= limit->chi2 + kWorseThanLimit ||
+        !context.work.allows()) {
+      continue;
+    }
+    auto found = spline_from_limit(*limit, context.arcs.data, context.work);
+    if (found && found->chi2 < spline->chi2 && found->chi2 <= most) {
+      found->own_points = coarse->own_points;
+      spline = std::move(found);
+      found_any = true;
+    }
+  }
+  if (found_any) {
+    follow_all_points(kSpline, context, contenders);
+  }
+}
+
+/// A search may end so far from a class's optimum that there is no evidence to be counted from it:
+/// where its chi-square alone does not put it below `least`, it is taken there. (A spline goes with
+/// its rival, as the best class only.)
+void weigh_at_optimum(CurveClass i, double least, const EvidenceContext& context,
+                      Contenders* contenders) {
+  ClassFit& told = *contenders->fits[i];
+  if (i == CurveClass::CubicSpline || contenders->evidences.classes[i] ||
+      contenders->coarse[i]->chi2 > context.out_of_reach ||
+      !(context.likelihood.log_evidence(told.chi2, 0.0, 0.0) > least) || !context.work.allows()) {
+    return;
+  }
+  const ClassFit& at_optimum = settle(i, RivalOf::Other, context.reduced, contenders, context.work);
+  told.chi2 = at_optimum.chi2 + context.arcs.smooth.chi2;
+  weigh_on_reduced(i, context, contenders);
 }
 
 /// Classes that end at their limit, or worse than it, are what it is.
@@ -256,11 +311,17 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
     }
     const double highest = best ? log_evidence(likelihood, contenders.evidences, *best)
                                 : -std::numeric_limits<double>::infinity();
+    const bool best_fits = best && fits_well(best->chi2, residual_count(data));
     for (const CurveClass i : kCurveClasses) {
       auto& fit = contenders.fits[i];
-      if (fit && !fit->chi2_of_all && !fit->at_limit &&
-          !has_straight_paths(contenders.evidences, i) &&
-          is_plausible(*fit, highest, margin, error, likelihood, contenders.evidences) &&
+      if (!fit || fit->chi2_of_all || fit->at_limit ||
+          has_straight_paths(contenders.evidences, i)) {
+        continue;
+      }
+      if (!best_fits) {  // what the reduced points told to be the best is none
+        weigh_at_optimum(i, highest - margin, context, &contenders);
+      }
+      if (is_plausible(*fit, highest, margin, error, likelihood, contenders.evidences) &&
           work.allows()) {
         fit = with_chi2_of_all(settle(i, RivalOf::Other, reduced, &contenders, work), reduced,
                                trusted, smooth, data, work);
@@ -269,6 +330,7 @@ Contenders refine_plausible(Contenders contenders, const EvidenceContext& contex
       }
     }
   }
+  seek_spline_from_limits(context, &contenders);
   take_limits(&contenders.fits);
   return contenders;
 }

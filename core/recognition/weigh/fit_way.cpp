@@ -9,9 +9,11 @@
 #include "core/curves/cubic_spline.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/spline_limits.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/own_directions.h"
+#include "core/recognition/weigh/probable_cusp.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
@@ -63,11 +65,13 @@ bool may_be_misdirected(const SideChoice& choice, const SideContext& by) {
 /// radius along the surface, and off it, if that is straight there, by half a millionth. [rad]
 constexpr double kSettledTurn = 1e-3;
 
-/// Lets the class of a fit in the same frame start from there, if it is a spline: wrong directions
-/// make a valley of their own about its sharp bend.
+/// Lets the class of a fit in the same frame start from there, if it may bend sharply: wrong
+/// directions make a valley of their own about the bend.
 void start_at(const ClassFit& fit, WarmStart* start) {
   if (fit.curve_class == CurveClass::CubicSpline) {
     start->polynomials.cubic_spline = fit.polynomial;
+  } else if (fit.curve_class == CurveClass::SemiCubicalParabola) {
+    start->polynomials.semi_cubical_parabola = fit.polynomial;
   }
 }
 
@@ -76,16 +80,31 @@ void start_at(const ClassFit& fit, WarmStart* start) {
 /// if none.
 std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext& by) {
   std::optional<ClassFit> best;
-  for (const auto& fit : choice.fits) {
-    if (fit && !fit->at_limit && fit->chi2 <= by.out_of_reach && by.work.allows()) {
-      auto on_all =
-          refine_on_all(settled(*fit, points_of(*fit, choice.reduced), RivalOf::Other, by.work),
-                        by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
-      if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
-          (!best || on_all->chi2 < best->chi2)) {
-        best = std::move(on_all);
-      }
+  const auto take = [&](const ClassFit& fit) {
+    if (fit.at_limit || fit.chi2 > by.out_of_reach || !by.work.allows()) {
+      return;
     }
+    auto on_all =
+        refine_on_all(settled(fit, points_of(fit, choice.reduced), RivalOf::Other, by.work),
+                      by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
+    if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
+        (!best || on_all->chi2 < best->chi2)) {
+      best = std::move(on_all);
+    }
+  };
+  for (const auto& fit : choice.fits) {
+    if (fit) take(*fit);
+  }
+  if (!best && choice.candidate == CurveClass::CubicSpline && by.work.allows()) {
+    // The search may have ended where the spline was not at its cusp yet, and so that of the cusp.
+    ClassFit cusp;
+    cusp.curve_class = CurveClass::SemiCubicalParabola;
+    cusp.own_points = choice.settled->own_points;
+    cusp.polynomial =
+        semi_cubical_from(*choice.settled->polynomial, points_of(*choice.settled, choice.reduced),
+                          by.out_of_reach, by.work);
+    cusp.chi2 = cusp.polynomial->chi2;
+    take(cusp);
   }
   return best;
 }
@@ -140,13 +159,12 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
         (by.directions_told && !may_be_misdirected(choice, by)) || !by.work.allows()) {
       break;
     }
-    // (a candidate that is no such curve on all points says nothing about the directions of all)
     const bool swayed = choice.refined && !agrees(choice, smooth);
     // On all points distances are those of the tips' centres, whatever the directions.
     const bool of_all = swayed && choice.refined->chi2 < choice.settled->chi2 + smooth.chi2;
-    const auto on_all = swayed && !of_all && has_kept_tips(smooth) && !fits_all(choice, by)
-                            ? best_on_all(choice, by)
-                            : std::nullopt;
+    // (a candidate that is no such curve on all points says nothing about the directions of all)
+    const bool asks_others = !choice.refined || (swayed && !of_all && !fits_all(choice, by));
+    const auto on_all = asks_others ? best_on_all(choice, by) : std::nullopt;
     const auto curve =
         on_all   ? to_canonical(*on_all, by.arcs.data)
         : of_all ? to_canonical(*choice.refined, by.arcs.data)
@@ -156,20 +174,23 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
     if (!curve) {
       break;
     }
-    const DirectionsOf which = swayed ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
+    const DirectionsOf which =
+        swayed || on_all ? DirectionsOf::AllPoints : DirectionsOf::KeptPoints;
     const Feet feet = on_all || may_be_misdirected(choice, by) ? Feet::Touched : Feet::Nearest;
     if (set_directions(which, *curve, feet, smooth, &touches, by.work) < kSettledTurn) {
       break;
     }
     FitData nearer = on_surface(touches, sides);
     WarmStart start = warm_start_from(choice.fits, choice.reduced);
-    if (of_all) {
-      start_at(*choice.refined, &start);
+    if (of_all || on_all) {
+      start_at(on_all ? *on_all : *choice.refined, &start);
     }
     const bool misled = round == 0 && was_sought_elsewhere(choice);
-    ClassFits again = along_own(
-        fit_classes(nearer, by.work, misled ? nullptr : &start, by.classes, by.out_of_reach),
-        nearer, &choice.fits);
+    ClassFits found =
+        fit_classes(nearer, by.work, misled ? nullptr : &start, by.classes, by.out_of_reach);
+    ClassFits again =
+        along_own(with_probable_cusp(std::move(found), nearer, by.likelihood.inflation(), by.work),
+                  nearer, &choice.fits);
     const double before = least_left(choice, smooth);
     SideChoice next = choice_of(sides, std::move(again), std::move(nearer), by);
     if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {

@@ -10,6 +10,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/weigh/contenders.h"
+#include "core/recognition/weigh/probable_cusp.h"
 
 namespace palpate {
 namespace {
@@ -42,20 +43,17 @@ std::optional<ClassFit> seen_by_all(const ClassFit& settled, const FitData& redu
   return fit;
 }
 
-}  // namespace
-
-ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
-                           const FitData& reduced, const SideContext& by, double out_of_reach) {
-  const SidedStart* start = start_for(starts, sides);
-  return fit_classes(reduced, by.work, start != nullptr ? &start->start : nullptr, by.classes,
-                     out_of_reach);
-}
-
-bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {
+/// What the reduced points tell of all classes, and their evidences with it.
+ClassFits told_by(const SideContext& by, ModesOf modes, SideChoice* choice) {
   const SmoothModel& smooth = by.arcs.smooth;
-  const ClassFits told = with_inferred_chi2(choice->fits, smooth);
+  ClassFits told = with_inferred_chi2(choice->fits, smooth);
   choice->evidences = evidences_of(told, choice->fits, smooth, choice->reduced, by.likelihood,
                                    std::move(choice->evidences), by.work, modes);
+  return told;
+}
+
+/// As settle_candidate(), of those told.
+bool settle_best(const ClassFits& told, const SideContext& by, SideChoice* choice) {
   const CurveClass before = choice->candidate;
   choice->candidate = best_class(told, by.likelihood, choice->evidences);
   if (choice->candidate == before) {
@@ -72,14 +70,59 @@ bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) 
   return true;
 }
 
+/// The candidate on all points, if it is such a curve there.
+void refine_settled(const SideContext& by, SideChoice* choice) {
+  if (!choice->settled) {
+    return;
+  }
+  choice->refined = seen_by_all(*choice->settled, points_of(*choice->settled, choice->reduced), by);
+  if (choice->refined && choice->refined->on_all &&
+      !lie_so(choice->sides, *choice->refined, by.arcs.data)) {
+    choice->refined.reset();
+  }
+}
+
+}  // namespace
+
+ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
+                           const FitData& reduced, const SideContext& by, double out_of_reach) {
+  const SidedStart* start = start_for(starts, sides);
+  return with_probable_cusp(
+      fit_classes(reduced, by.work, start != nullptr ? &start->start : nullptr, by.classes,
+                  out_of_reach),
+      reduced, by.likelihood.inflation(), by.work);
+}
+
+bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {
+  return settle_best(told_by(by, modes, choice), by, choice);
+}
+
 void take_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {
-  if (settle_candidate(by, modes, choice) && choice->settled) {
-    choice->refined =
-        seen_by_all(*choice->settled, points_of(*choice->settled, choice->reduced), by);
-    if (choice->refined && choice->refined->on_all &&
-        !lie_so(choice->sides, *choice->refined, by.arcs.data)) {
-      choice->refined.reset();
-    }
+  ClassFits told = told_by(by, modes, choice);
+  if (!settle_best(told, by, choice)) {
+    return;
+  }
+  refine_settled(by, choice);
+  // The reduced points may tell a class that all points do not have, as beside a cusp a spline that
+  // goes round it: then the next of those that both have.
+  const auto fits_reduced = [&] {
+    return choice->settled && fits_well(choice->settled->chi2, residual_count(choice->reduced));
+  };
+  if (fits_all(*choice, by) || !fits_reduced()) {
+    return;
+  }
+  const CurveClass first = choice->candidate;
+  std::optional<ClassFit> settled_first = choice->settled;
+  std::optional<ClassFit> refined_first = choice->refined;
+  while (!fits_all(*choice, by) && fits_reduced() && by.work.allows()) {
+    told[choice->candidate].reset();
+    settle_best(told, by, choice);
+    refine_settled(by, choice);
+  }
+  if (!fits_all(*choice, by)) {
+    choice->candidate = first;
+    choice->settled = std::move(settled_first);
+    choice->refined = std::move(refined_first);
   }
 }
 

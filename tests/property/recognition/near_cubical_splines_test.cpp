@@ -8,7 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "core/curves/algebraic/canonical_cubic.h"
 #include "core/curves/curve.h"
+#include "core/numerics/probability/negligible.h"
+#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/orthogonal/polynomial_fit.h"
 #include "core/recognition/given/given_class.h"
 #include "core/recognition/prior/touched_prior.h"
@@ -24,6 +27,7 @@ struct NearCubical {
   double sigma_m = 0.0;
   double chi2_of_truth = 0.0;                 ///< distances of the points from the true curve
   TouchedVector arc = TouchedVector::Zero();  ///< coordinates about its middle
+  PolynomialCoefficients coefficients;
 };
 
 /// `least_q`, `most_q`: of the quadratic term of x over the linear one, at the end of the arc.
@@ -34,10 +38,11 @@ NearCubical near_cubical(double least_q, double most_q, double sigma, int count,
   PolynomialFit truth;
   PolynomialCoefficients& c = truth.coefficients;
   c.col(1) = x + test::uniform(rng, -1.0, 1.0) * left_of(x);
-  c.col(2) = test::random_sign(rng) * test::log_uniform(rng, least_q, most_q) * x +
-             test::uniform(rng, -1.0, 1.0) * left_of(x);
+  const double q = most_q > 0.0 ? test::log_uniform(rng, least_q, most_q) : 0.0;
+  c.col(2) = test::random_sign(rng) * q * x + test::uniform(rng, -1.0, 1.0) * left_of(x);
   c.col(3) = test::random_sign(rng) * test::uniform(rng, 0.5, 1.5) * left_of(x);
   NearCubical scene;
+  scene.coefficients = c;
   const double speed = c.col(1).norm();
   const Vec2 tangent = c.col(1) / speed;
   const Vec2 second = 2.0 / (speed * speed) * c.col(2);
@@ -59,12 +64,13 @@ NearCubical near_cubical(double least_q, double most_q, double sigma, int count,
 }
 
 /// Chi-square of the curve in the parameters that are told.
-double chi2_as_told(const GivenFit& fit, const NearCubical& scene) {
-  const auto curve = make_curve(fit.shape.curve_class, fit.shape.values);
+double chi2_as_told(const ShapeParameters& shape, const Pose2& world_T_curve,
+                    const NearCubical& scene) {
+  const auto curve = make_curve(shape.curve_class, shape.values);
   double chi2 = 0.0;
   for (const Vec2& touched_m : scene.touched_m) {
     const double residual =
-        foot_point(*curve, fit.world_T_curve.to_local(touched_m)).distance / scene.sigma_m;
+        foot_point(*curve, world_T_curve.to_local(touched_m)).distance / scene.sigma_m;
     chi2 += residual * residual;
   }
   return chi2;
@@ -94,7 +100,8 @@ TEST(NearCubicalSplines, AGivenOneIsOfLeastSquaresOrNotTold) {
     // Nothing fits better than least squares, to their rounding.
     EXPECT_LE(fit.chi2, scene.chi2_of_truth + 1e-6 * kCount) << i;
     // Rounding of the parameters moves the curve by a tenth of the noise at most.
-    EXPECT_LE(std::sqrt(chi2_as_told(fit, scene)), std::sqrt(fit.chi2) + 0.1 * std::sqrt(kCount))
+    EXPECT_LE(std::sqrt(chi2_as_told(fit.shape, fit.world_T_curve, scene)),
+              std::sqrt(fit.chi2) + 0.1 * std::sqrt(kCount))
         << i;
   }
   std::cout << "of " << scenes << ": fitted " << fitted << '\n';
@@ -140,6 +147,72 @@ TEST(NearCubicalSplines, HaveWhatThePriorLeavesThem) {
   std::cout << "of " << scenes << ": RECOGNIZED as splines " << recognized
             << ", as what they are not nearly " << other << ", P of a spline at least " << least
             << '\n';
+}
+
+/// Shape and pose of such a spline make up for one another to many digits: a product of their
+/// derivatives has lost what that direction is told by.
+TEST(NearCubicalSplines, DeviationsAreAsStated) {
+  const int scenes = test::stress_count(60);
+  constexpr int kCount = 60;
+  constexpr double kSigma = 1e-5;
+  double squares = 0.0;
+  int told = 0;
+  for (int i = 0; i < scenes; ++i) {
+    std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
+    const NearCubical scene = near_cubical(3e-3, 2e-2, kSigma, kCount, rng);
+    std::vector<ContactSample> samples;
+    for (const Vec2& touched_m : scene.touched_m) {
+      samples.push_back({touched_m, kSigma, 0});
+    }
+    Recognizer recognizer;
+    recognizer.add({0, 0}, samples);
+    const Recognition answer = recognizer.recognize();
+    if (answer.shape.curve_class != CurveClass::CubicSpline || !answer.covariance.allFinite()) {
+      continue;
+    }
+    const auto truth =
+        canonicalise_as(CurveClass::CubicSpline, PolynomialCurve2{scene.coefficients}).curve;
+    const double off = answer.shape.values[0] - truth->values[0];
+    squares += off * off / answer.covariance(0, 0);
+    ++told;
+  }
+  std::cout << "of " << scenes << ": told " << told
+            << ", mean square of a's error over its variance " << squares / told << '\n';
+  EXPECT_GE(10 * told, 9 * scenes);
+  EXPECT_TRUE(can_be_noise(squares, told)) << squares;
+  // Nor too wide, by as many deviations of chi-square's law.
+  EXPECT_GT(squares, told - kNegligibleDeviations * std::sqrt(2.0 * told));
+}
+
+/// A cubical parabola is a spline at its limit: given as one, it is told as a curve that has its
+/// points, or as undetermined.
+TEST(NearCubicalSplines, CubicalParabolasGivenAsSplinesHaveTheirPoints) {
+  const int scenes = test::stress_count(60);
+  constexpr int kCount = 80;
+  constexpr double kSigma = 1e-4;
+  int recognized = 0;
+  for (int i = 0; i < scenes; ++i) {
+    std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
+    const NearCubical scene = near_cubical(0.0, 0.0, kSigma, kCount, rng);
+    std::vector<ContactSample> samples;
+    for (const Vec2& touched_m : scene.touched_m) {
+      samples.push_back({touched_m, kSigma, 0});
+    }
+    RecognizerOptions options;
+    options.classes = class_bit(CurveClass::CubicSpline);
+    Recognizer recognizer(options);
+    recognizer.add({0, 0}, samples);
+    const Recognition answer = recognizer.recognize();
+    if (answer.status != RecognitionStatus::Recognized ||
+        answer.shape.curve_class != CurveClass::CubicSpline) {
+      continue;
+    }
+    ++recognized;
+    EXPECT_GT(answer.covariance.diagonal().minCoeff(), 0.0) << i;
+    const double chi2 = chi2_as_told(answer.shape, answer.world_T_curve, scene);
+    EXPECT_TRUE(can_be_noise(chi2, kCount)) << i << ": " << chi2;
+  }
+  std::cout << "of " << scenes << ": RECOGNIZED " << recognized << '\n';
 }
 
 }  // namespace

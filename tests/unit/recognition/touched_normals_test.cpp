@@ -133,7 +133,7 @@ TEST(TouchedNormals, ErrorsHaveTheLawOfTheirCovariance) {
   auto rng = test::test_rng();
   constexpr int kScenes = 300;
   Part part;
-  part.sigma_m = 3e-4;
+  part.sigma_m = 5e-5;
   double squares = 0.0;
   double narrower = 0.0;
   for (int scene = 0; scene < kScenes; ++scene) {
@@ -163,7 +163,7 @@ TEST(TouchedNormals, FewerTouchesTellTheClass) {
   int without = 0;
   for (int scene = 0; scene < 40; ++scene) {
     Part part;
-    part.sigma_m = 3e-4;
+    part.sigma_m = 5e-5;
     part.from = 0.3;
     part.to = 2.9;
     const std::vector<Touch> touches = touch(part, 8, rng);
@@ -178,7 +178,7 @@ TEST(TouchedNormals, FewerTouchesTellTheClass) {
   }
   RecordProperty("with", with);
   RecordProperty("without", without);
-  std::printf("ellipse on 150 degrees, 8 touches, noise 1 %%: %d of 40 with normals, %d without\n",
+  std::printf("ellipse on 150 degrees, 8 touches, noise 50 um: %d of 40 with normals, %d without\n",
               with, without);
   EXPECT_GT(with, without);
 }

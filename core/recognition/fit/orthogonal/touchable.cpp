@@ -86,12 +86,17 @@ bool on_one_branch(const ImplicitFit& fit, std::span<const FitPoint> points, dou
   return !(2 * far >= points.size() ? of_far : of_all).both();
 }
 
-/// Whether two points are so far apart that noise does not turn the direction from one to the other
-/// round: it would have to be out by `farthest` of its standard deviations.
-bool tells_direction(const FitPoint& from, const FitPoint& to, double farthest) {
+/// Whether two points' places are so far apart that noise does not turn the direction from one to
+/// the other round: it would have to be out by `farthest` of its standard deviations.
+bool is_told_apart(const Vec2& a, const FitPoint& from, const Vec2& b, const FitPoint& to,
+                   double farthest) {
   const double v = 1.0 / (from.inverse_sigma * from.inverse_sigma);
   const double w = 1.0 / (to.inverse_sigma * to.inverse_sigma);
-  return (to.position - from.position).squaredNorm() > farthest * farthest * (v + w);
+  return (b - a).squaredNorm() > farthest * farthest * (v + w);
+}
+
+bool tells_direction(const FitPoint& from, const FitPoint& to, double farthest) {
+  return is_told_apart(from.position, from, to.position, to, farthest);
 }
 
 /// Two points of a patch, by their numbers in it.
@@ -326,14 +331,20 @@ std::optional<std::vector<double>> feet_on_one_strand(const PolynomialFit& fit, 
 }
 
 /// Whether a parameter runs to and fro along a patch, as samples half of it apart show, whose order
-/// noise does not reverse. nullopt if there are none.
-std::optional<bool> runs_to_and_fro(std::span<const double> feet, std::span<const FitPoint> points,
-                                    double farthest) {
+/// noise does not reverse. nullopt if there are none. A tip that rolls about a cusp goes on while
+/// its foot stays.
+std::optional<bool> runs_to_and_fro(const PolynomialFit& fit, std::span<const double> feet,
+                                    std::span<const FitPoint> points, double farthest) {
+  const auto stays = [&](std::size_t from, std::size_t to) {
+    return points[from].offset > 0.0 &&
+           !is_told_apart(place_at(fit, feet[from]), points[from], place_at(fit, feet[to]),
+                          points[to], farthest);
+  };
   const std::size_t lag = points.size() / 2;
   std::size_t forward = 0;
   std::size_t told = 0;
   for (std::size_t i = 0; i + lag < points.size(); ++i) {
-    if (tells_direction(points[i], points[i + lag], farthest)) {
+    if (tells_direction(points[i], points[i + lag], farthest) && !stays(i, i + lag)) {
       ++told;
       forward += feet[i + lag] >= feet[i] ? 1 : 0;
     }
@@ -361,10 +372,10 @@ bool is_touchable(const PolynomialFit& fit, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
     const std::span<const FitPoint> points(data.points.data() + patch.begin, patch.size());
     const std::span<const double> feet(fit.t.data() + patch.begin, patch.size());
-    const std::optional<bool> to_and_fro = runs_to_and_fro(feet, points, farthest);
+    const std::optional<bool> to_and_fro = runs_to_and_fro(fit, feet, points, farthest);
     if (!to_and_fro ? goes_to_and_fro(fit, data, patch) : *to_and_fro) {
       const auto on_one = to_and_fro ? feet_on_one_strand(fit, data, patch) : std::nullopt;
-      if (!on_one || *runs_to_and_fro(*on_one, points, farthest)) {
+      if (!on_one || *runs_to_and_fro(fit, *on_one, points, farthest)) {
         return false;
       }
     }
