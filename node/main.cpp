@@ -148,6 +148,7 @@ int main(int argc, char** argv) {
       "default.\n"
       "Exit codes: 0 stopped as asked, 1 failed at run time, 2 usage, 6 configuration.",
       "palpate-node");
+  app.option_defaults()->disable_flag_override();  // --insecure=maybe is a mistake
   CommandLine command_line;
   app.add_option("--config", command_line.config_file, "File of options, protobuf text format")
       ->type_name("FILE");

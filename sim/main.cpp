@@ -213,6 +213,10 @@ struct Player {
         if (counts.stopped || (options.fast && refused > 0)) return code_of(refused);
       }
     }
+    if (refused == 0 && publisher.recognizer_has_gone()) {
+      return failed("the recognizer at " + options.contacts +
+                    " has gone: what was published since is lost");
+    }
     publisher.finish_within();
     return code_of(refused);
   }
@@ -245,11 +249,14 @@ struct Player {
 };
 
 int run(const CLI::App& app, const CommandLine& options) {
-  for (const std::string& path : {options.csv, options.truth}) {
-    if (const std::string why = overwrites_input(path, options.scenes); !why.empty()) {
-      std::cerr << "palpate-sim: " << why << "\n";
-      return kUsage;
-    }
+  const std::vector<std::string> written{options.csv, options.truth};
+  std::string why = overwrites_output(written);
+  for (const std::string& path : written) {
+    if (why.empty()) why = overwrites_input(path, options.scenes);
+  }
+  if (!why.empty()) {
+    std::cerr << "palpate-sim: " << why << "\n";
+    return kUsage;
   }
   std::vector<sim::Scene> scenes;
   for (const std::string& path : options.scenes) {
@@ -277,6 +284,7 @@ int main(int argc, char** argv) {
       "palpate-sim");
   app.set_version_flag("--version", PALPATE_VERSION);
   CommandLine options;
+  app.option_defaults()->disable_flag_override();  // --quiet=maybe is a mistake
   add_options(app, options);
   try {
     app.parse(argc, argv);

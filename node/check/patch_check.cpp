@@ -30,6 +30,7 @@ struct SeenInPatches {
   std::size_t longest = 0;
   std::size_t jumps = 0;
   std::size_t unordered = 0;
+  std::size_t unordered_within = 0;  ///< to and fro over the patch alone
   std::size_t repeated = 0;
   std::size_t holes = 0;
   double widest = 0.0;  ///< hole, in typical spacings
@@ -100,7 +101,8 @@ void see_patch(const CheckedPatch& patch, double extent_of_all, SeenInPatches* s
     low = low.cwiseMin(p);
     high = high.cwiseMax(p);
   }
-  seen->extent = std::max(seen->extent, (high - low).norm());
+  const double extent = (high - low).norm();
+  seen->extent = std::max(seen->extent, extent);
   const std::vector<double> all_steps = spacings(patch.positions);
   seen->repeated += static_cast<std::size_t>(std::count(all_steps.begin(), all_steps.end(), 0.0));
   // Of a probe that stands still spacings tell nothing.
@@ -112,11 +114,17 @@ void see_patch(const CheckedPatch& patch, double extent_of_all, SeenInPatches* s
   }
   std::vector<double> sorted = steps;
   const double typical = median_of(sorted);
-  seen->unordered += leads_to_and_fro(moved, extent_of_all) ? 1 : 0;
+  // A stroke no longer than its noise leads to and fro as well.
+  constexpr double kLongStroke = 20.0;  // of the stated noise
+  if (leads_to_and_fro(moved, extent_of_all)) {
+    ++seen->unordered;
+  } else if (extent > kLongStroke * patch.stated_sigma_m() && leads_to_and_fro(moved, extent)) {
+    ++seen->unordered_within;
+  }
   seen->jumps += jumps_of(moved, typical);
   const NoiseEstimate noise = estimate_noise(patch.positions);
   see_holes(steps, typical, noise, seen);
-  seen->coarsest = std::max(seen->coarsest, typical / std::max((high - low).norm(), typical));
+  seen->coarsest = std::max(seen->coarsest, typical / std::max(extent, typical));
   see_noise(patch, noise, seen);
 }
 
@@ -192,6 +200,18 @@ class PatchFindings {
                   "sort the points of a stroke along the part; points in no order are "
                   "touches=True"));
       findings_->back().has_no_order = true;
+    }
+    if (seen_.unordered_within > 0) {
+      add_spoiling(Severity::Warning,
+                   counted(seen_.unordered_within, "patch goes", "patches go") +
+                       " to and fro over its own extent",
+                   cure_of(source_,
+                           "send the samples of a patch in their order along the part, unless it "
+                           "is no longer than their noise",
+                           "were the rows sorted by a coordinate? Leave them in the order of the "
+                           "stroke; a stroke that is no longer than its noise looks so, too",
+                           "were the points sorted by a coordinate? Leave them in the order of "
+                           "the stroke; one that is no longer than its noise looks so, too"));
     }
   }
 

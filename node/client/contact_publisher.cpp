@@ -27,6 +27,7 @@ ContactPublisher::ContactPublisher(const ContactPublisherOptions& options)
       epoch_(random_epoch()) {
   const Result<Endpoint> endpoint = parse_endpoint(options.endpoint, /*bind_by_default=*/false);
   if (!endpoint) throw std::invalid_argument(endpoint.error);
+  binds_ = endpoint.value->bind;
   // Without it libzmq drops at the high-water mark and reports success.
   if (!endpoint.value->bind || options.all_readers_or_none) {
     socket_.set(zmq::sockopt::xpub_nodrop, true);
@@ -43,6 +44,7 @@ void ContactPublisher::take_subscriptions() {
     // First byte 1: a prefix has its first subscriber; 0: it has lost its last one.
     const char kind = *message.topic.data<char>();
     if (kind == 1) ++listeners_;
+    had_listeners_ = had_listeners_ || listeners_ > 0;
     if (kind == 0 && listeners_ > 0) --listeners_;
   }
 }
@@ -91,6 +93,12 @@ bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatc
     constexpr std::chrono::milliseconds kAgain{1};
     std::this_thread::sleep_for(kAgain);
   }
+}
+
+bool ContactPublisher::recognizer_has_gone() {
+  take_subscriptions();
+  // A socket that connects keeps the subscriptions of the other side for its return.
+  return binds_ ? had_listeners_ && listeners_ == 0 : handshakes_.is_gone();
 }
 
 void ContactPublisher::finish_within(std::chrono::milliseconds longest) {

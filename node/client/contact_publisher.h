@@ -64,6 +64,10 @@ class ContactPublisher {
   /// for.
   void finish_within(std::chrono::milliseconds longest = std::chrono::seconds(5));
 
+  /// Whether the recognizer was there and has gone, as far as is known by now: what is published
+  /// since is lost unless it comes back, and what was on its way to it may be.
+  bool recognizer_has_gone();
+
   /// The random number in the header of every message of this publisher.
   std::uint64_t epoch() const { return epoch_; }
 
@@ -79,6 +83,8 @@ class ContactPublisher {
   zmq::socket_t socket_;
   HandshakeWatch handshakes_;
   std::uint64_t epoch_;
+  bool binds_ = false;
+  bool had_listeners_ = false;
   int listeners_ = 0;
   std::map<std::string, Probe, std::less<>> probes_;
   std::string buffer_;

@@ -35,8 +35,8 @@ std::optional<PointPlane> point_plane_from_name(std::string_view name);
 std::optional<double> length_unit_m(std::string_view name);
 
 struct ContactFileOptions {
-  /// Unit of every length in the file, whatever its columns are called; nullopt = as the columns
-  /// say, metres where they do not. [m]
+  /// Unit of the lengths whose columns name none; of every length in the file if a coordinate names
+  /// another. nullopt = as the columns say, metres where they do not. [m]
   std::optional<double> unit_m;
   PointPlane plane = PointPlane::Varying;
   /// Every row is a touch of its own, a patch of one sample; nullopt = only in a probe log.

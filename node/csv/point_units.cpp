@@ -20,14 +20,36 @@ std::string_view name_of_unit(double metres) {
   return found == kPlain.end() ? "?" : *found;
 }
 
+constexpr std::array<std::pair<Column, const char*>, 5> kLengths = {
+    {{Column::X, "x"},
+     {Column::Y, "y"},
+     {Column::Z, "z"},
+     {Column::Sigma, "sigma"},
+     {Column::TipRadius, "tip_radius"}}};
+
+/// Whether --unit contradicts what a coordinate's name says: then no name of a length is believed.
+bool overrules_names(const PointColumns& columns, double unit_m) {
+  return std::any_of(kCoordinates.begin(), kCoordinates.end(), [&](Column column) {
+    const auto named = named_unit(columns, column);
+    return named && *named != unit_m;
+  });
+}
+
+/// Lengths that keep the unit of their names beside another of --unit; or nothing.
+std::string note_of_kept_units(const PointColumns& columns, double unit_m) {
+  std::string note;
+  for (const auto& [column, name] : kLengths) {
+    const auto named = named_unit(columns, column);
+    if (columns.place(column) && named && *named != unit_m) {
+      note += (note.empty() ? "" : "; ") + std::string("column ") + name + " is taken in " +
+              std::string(name_of_unit(*named)) + ", as its name says, not in the unit of --unit";
+    }
+  }
+  return note;
+}
+
 /// Columns of lengths without a unit, beside a coordinate that names one; or nothing.
 std::string note_of_lent_unit(const PointColumns& columns) {
-  constexpr std::array<std::pair<Column, const char*>, 5> kLengths = {
-      {{Column::X, "x"},
-       {Column::Y, "y"},
-       {Column::Z, "z"},
-       {Column::Sigma, "sigma"},
-       {Column::TipRadius, "tip_radius"}}};
   std::string without;
   std::size_t count = 0;
   std::string lender;
@@ -56,8 +78,9 @@ double unit_of(const PointColumns& columns, Column column, const ContactFileOpti
   const auto of_kind = [&](double length_m) {
     return is_area(column) ? length_m * length_m : length_m;
   };
+  const bool overruled = options.unit_m && overrules_names(columns, *options.unit_m);
+  if (named && !overruled) return *named;
   if (options.unit_m) return of_kind(*options.unit_m);
-  if (named) return *named;
   // One coordinate's unit stands for what names none.
   for (const Column other : kCoordinates) {
     if (const auto unit = named_unit(columns, other)) return of_kind(*unit);
@@ -102,15 +125,14 @@ std::string clash_of_units(const PointColumns& columns) {
 
 std::string note_of_unit(const PointColumns& columns, const ContactFileOptions& options,
                          bool is_probe_log) {
-  bool names_unit = false;
-  for (const Column axis : kCoordinates) {
-    const auto named = named_unit(columns, axis);
-    names_unit |= named.has_value();
-    if (options.unit_m && named && *named != *options.unit_m) {
-      return "the unit is taken from --unit, not from the columns' names";
-    }
+  if (options.unit_m) {
+    return overrules_names(columns, *options.unit_m)
+               ? "the unit is taken from --unit, not from the columns' names"
+               : note_of_kept_units(columns, *options.unit_m);
   }
-  if (options.unit_m) return "";
+  const bool names_unit = std::any_of(kCoordinates.begin(), kCoordinates.end(), [&](Column axis) {
+    return named_unit(columns, axis).has_value();
+  });
   if (names_unit) return note_of_lent_unit(columns);
   return is_probe_log ? "the log names no unit: taken as millimetres (else --unit in)"
                       : "no unit is named: taken as metres (else --unit mm, um or in)";

@@ -1,6 +1,7 @@
-// Keeps programs from writing over what they read.
+// Keeps programs from writing over what they read, or have written.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -26,6 +27,24 @@ inline std::string overwrites_input(const std::string& output,
             : input != output ? " as " + printable_path(input)
                               : "") +
            "; give the output another name";
+  }
+  return "";
+}
+
+/// What is wrong if two of `outputs` are one file, by whatever name; else nothing. Empty paths are
+/// none; "-" is standard output.
+inline std::string overwrites_output(std::span<const std::string> outputs) {
+  std::error_code none;
+  const auto is_same = [&](const std::string& a, const std::string& b) {
+    return std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none);
+  };
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      if (!outputs[i].empty() && !outputs[k].empty() && is_same(outputs[i], outputs[k])) {
+        return printable_path(outputs[i]) +
+               ": not written: two outputs have this name; give one of them another";
+      }
+    }
   }
   return "";
 }

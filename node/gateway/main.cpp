@@ -78,6 +78,7 @@ void add_plant_options(CLI::App& app, CommandLine& line) {
 
 void add_options(CLI::App& app, CommandLine& line) {
   app.set_config("--config", "", "File of these options, NAME = VALUE a line")->type_name("FILE");
+  app.allow_config_extras(CLI::config_extras_mode::error);
   app.set_version_flag("--version", PALPATE_VERSION);
   app.add_option("--name", line.gateway.name, "Name, as in palpate.<cell>.gateway.<name>")
       ->capture_default_str()
@@ -133,6 +134,7 @@ void add_options(CLI::App& app, CommandLine& line) {
       ->capture_default_str()
       ->type_name("BYTES");
   app.add_option("--log-level", line.log_level, "trace, debug, info, warning, error or off")
+      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str()
       ->type_name("LEVEL");
 }
@@ -201,6 +203,7 @@ int main(int argc, char** argv) {
       "Down (--take): recognises what is stored, by a node of its own, and stores the answers.\n"
       "Exit codes: 0 stopped as asked, 1 failed at run time, 2 usage.",
       "palpate-gateway");
+  app.option_defaults()->disable_flag_override();  // --flag=maybe is a mistake
   CommandLine line;
   add_options(app, line);
   try {

@@ -95,6 +95,7 @@ int run(int argc, char** argv) {
       "palpate");
   app.set_version_flag("--version", PALPATE_VERSION);
   app.require_subcommand(1);
+  app.option_defaults()->disable_flag_override();  // --touches=maybe is a mistake
   int exit_code = palpate::kDone;
   palpate::add_fit_command(app, exit_code);
   palpate::add_calibrate_command(app, exit_code);

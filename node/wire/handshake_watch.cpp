@@ -24,7 +24,8 @@ std::string text_of(const SocketEvent& told) {
 HandshakeWatch::HandshakeWatch(zmq::context_t& context, zmq::socket_t& socket)
     : monitor_(context, socket,
                ZMQ_EVENT_HANDSHAKE_FAILED_AUTH | ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL |
-                   ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {}
+                   ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL | ZMQ_EVENT_HANDSHAKE_SUCCEEDED |
+                   ZMQ_EVENT_DISCONNECTED) {}
 
 const std::string& HandshakeWatch::refusal() {
   // A listener that starts or ends at that moment closes one or two.
@@ -32,6 +33,10 @@ const std::string& HandshakeWatch::refusal() {
   while (const auto told = monitor_.next()) {
     if (told->event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {
       closed_in_a_row_ = 0;
+      is_gone_ = false;
+      was_there_ = true;
+    } else if (told->event == ZMQ_EVENT_DISCONNECTED) {
+      is_gone_ = was_there_;
     } else if (told->event != ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL) {
       refusal_ = text_of(*told);
     } else if (++closed_in_a_row_ == kClosedInARow) {

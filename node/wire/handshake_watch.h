@@ -21,12 +21,21 @@ class HandshakeWatch {
   /// was none.
   const std::string& refusal();
 
+  /// Whether the other side was there and has gone, as far as is known by now. Of a socket that
+  /// connects to one.
+  bool is_gone() {
+    refusal();
+    return is_gone_;
+  }
+
   /// To be polled for input; then call refusal().
   zmq::socket_t& events() { return monitor_.events(); }
 
  private:
   SocketMonitor monitor_;
   std::string refusal_;
+  bool was_there_ = false;
+  bool is_gone_ = false;
   int closed_in_a_row_ = 0;  ///< connections closed before the handshake succeeded
 };
 

@@ -1,6 +1,7 @@
 """Tools on a recogniser of the plant as on any node, TLS both ways, and what is said of wrong options."""
 import json
 import subprocess
+import tempfile
 import time
 import unittest
 
@@ -114,7 +115,15 @@ class Tools(unittest.TestCase):
             (["--take", "a", "--credentials", "/nowhere"], 2, "/nowhere"),
             (["--take", "a", "--tls-ca", "/nowhere"], 2, "/nowhere"),
             (["--from", "ipc:///tmp/x", "--cell", "c", "--spool", "/proc/x"], 1, "/proc/x"),
+            (["--take", "a", "--run-folder", "/tmp", "--log-level", "loud"], 2, "--log-level"),
         ]
+        with tempfile.NamedTemporaryFile("w", suffix=".conf") as config:
+            config.write("spool-byte = 4096\n")
+            config.flush()
+            cases.append((["--config", config.name, "--take", "a", "--run-folder", "/tmp"], 2, "spool-byte"))
+            self.refuses(cases)
+
+    def refuses(self, cases):
         for arguments, expected, said in cases:
             code, out, err = run(GATEWAY, *arguments)
             self.assertEqual(code, expected, (arguments, err))

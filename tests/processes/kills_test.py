@@ -119,6 +119,21 @@ class Kills(unittest.TestCase):
         print(f"{len(self.recordings)} recordings, each read to its last whole record; {broken} ended within one")
         self.assertLess(max(max(taken) for taken in times.values() if taken), RECOVERY_S)
 
+    def test_a_recognizer_that_is_gone_at_the_end_is_told(self):
+        with Bus() as bus:
+            for comes_back in (False, True):
+                node = bus.start_node()
+                probe = bus.start(SIM, SCENE, "--contacts", bus.contacts, "--speed", "0.5", stderr=subprocess.PIPE)
+                time.sleep(0.5)
+                node.send_signal(signal.SIGKILL)
+                node.wait()
+                bus.processes.remove(node)
+                node = bus.start_node() if comes_back else None
+                _, err = probe.communicate(timeout=30)
+                bus.processes.remove(probe)
+                self.assertEqual(probe.returncode, 0 if comes_back else 1, err)
+                self.assertEqual(f"the recognizer at {bus.contacts} has gone" in err, not comes_back)
+
     def read_recordings(self, bus):
         """Each is records whose checksums are right, and at most the beginning of one more; `palpate replay` plays all
         contacts of them. Gives how many were broken off."""

@@ -34,6 +34,10 @@ class Lifecycle(unittest.TestCase):
 
     def test_exit_codes(self):
         self.assertEqual(run(NODE, "--nonsense")[0], 2)
+        for program, flag in ((NODE, "--insecure"), (SIM, "--quiet")):
+            code, _, err = run(program, flag + "=maybe")
+            self.assertEqual(code, 2)
+            self.assertIn(flag[2:], err)
         code, out, err = run(NODE, "--max-groups", "0", "--check-config")
         self.assertEqual((code, out), (6, ""))
         self.assertIn("max_groups", err)

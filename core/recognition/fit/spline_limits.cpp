@@ -8,6 +8,7 @@
 
 #include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/polynomials/real_roots.h"
+#include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {

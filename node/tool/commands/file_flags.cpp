@@ -7,9 +7,10 @@ namespace palpate {
 void add_file_flags(CLI::App& command, FileFlags& flags) {
   const char* group = "File";
   command
-      .add_option("--unit", flags.unit,
-                  "Unit of every length in the file: m, mm, cm, um, nm or in; else as its columns "
-                  "are called, metres where they name none")
+      .add_option(
+          "--unit", flags.unit,
+          "Unit of the lengths whose columns name none: m, mm, cm, um, nm or in; else metres. "
+          "Of every length if it contradicts what a coordinate names")
       ->check([](const std::string& name) {
         return length_unit_m(name) ? std::string()
                                    : "\"" + name + "\" is none of m, mm, cm, um, nm, in";

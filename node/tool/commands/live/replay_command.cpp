@@ -289,10 +289,16 @@ int run(const ReplayCommand& command) {
     });
   }
   progress.end();
-  if (!is_stopped) publisher.finish_within();
+  const bool has_gone = !is_stopped && refused == 0 && publisher.recognizer_has_gone();
+  if (!is_stopped && !has_gone) publisher.finish_within();
   std::cerr << command.file << ": " << messages << " messages, " << samples << " samples";
   std::cerr << (refused > 0 ? ", " + counted(refused, "message") + " not taken\n" : "\n");
   const bool is_whole = !recording || recording->report();
+  if (has_gone) {
+    return complain("the recognizer at " + command.connection.endpoint +
+                        " has gone: what was published since is lost",
+                    kFailed);
+  }
   return refused == 0 && is_whole ? kDone : kFailed;
 }
 

@@ -108,7 +108,11 @@ int run(const CalibrateCommand& calibrate) {
   QualificationOrigin origin;
   const Result<Curve> artefact = artefact_of(calibrate, origin.artefact);
   if (!artefact) return complain(artefact.error, kUsage);
-  for (const std::string& path : {calibrate.output, calibrate.plot}) {
+  const std::vector<std::string> written{calibrate.output, calibrate.plot};
+  if (const std::string why = overwrites_output(written); !why.empty()) {
+    return complain(why, kUsage);
+  }
+  for (const std::string& path : written) {
     if (const std::string why = overwrites_input(path, calibrate.files); !why.empty()) {
       return complain(why, kUsage);
     }

@@ -71,7 +71,9 @@ std::string wrong_with_outputs(const FitRequest& fit, std::size_t groups) {
   std::vector<std::string> read = fit.files;
   read.insert(read.end(), fit.probe_files.begin(), fit.probe_files.end());
   read.push_back(fit.part);
-  for (const std::string& path : {fit.plot, fit.invariants_plot, fit.curve_file}) {
+  const std::vector<std::string> written{fit.plot, fit.invariants_plot, fit.curve_file};
+  if (std::string why = overwrites_output(written); !why.empty()) return why;
+  for (const std::string& path : written) {
     for (std::size_t number = 1; !path.empty() && number <= groups; ++number) {
       std::string why = overwrites_input(plot_path(path, number), read);
       if (!why.empty()) return why;

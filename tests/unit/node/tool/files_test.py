@@ -190,6 +190,14 @@ class Files(unittest.TestCase):
             self.assertIn("not written: it is the file that is read", err)
             self.assertEqual(read.read_bytes(), before, command)
         self.assertFalse((self.folder / "a.svg").exists())
+        for command in ((TOOL, "fit", part, "--plot", self.folder / "b.svg", "--plot-invariants", self.folder / "." / "b.svg"),
+                        (TOOL, "calibrate", ring, "--circle", "1", "--output", self.folder / "b.svg", "--plot", self.folder / "b.svg"),
+                        (SIM, scene, "--csv", self.folder / "b.svg", "--truth", self.folder / "b.svg"),
+                        (SIM, scene, "--csv", "-", "--truth", "-")):
+            code, out, err = run(*command)
+            self.assertEqual((code, out), (2, ""), (command, err))
+            self.assertIn("two outputs have this name", err)
+        self.assertFalse((self.folder / "b.svg").exists())
         before = part.read_bytes()
         with part.open() as stdin:
             done = subprocess.run([TOOL, "fit", "-", "--export", part], stdin=stdin, capture_output=True, text=True)

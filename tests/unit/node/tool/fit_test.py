@@ -274,7 +274,8 @@ class Fit(unittest.TestCase):
     def test_bad_usage_exits_with_2(self):
         path = self.write("part.csv", HEADER + ellipse())
         for arguments in (["fit"], ["fit", path, "--classes", "sphere"], ["fit", path, "--sigma", "-1"],
-                          ["fit", path, "--method", "magic"], ["fit", path, "--nonsense"], []):
+                          ["fit", path, "--method", "magic"], ["fit", path, "--nonsense"],
+                          ["fit", path, "--touches=maybe"], ["fit", path, "--unqualified-probe=maybe"], []):
             code, out, err = run(TOOL, *arguments)
             self.assertEqual((code, out), (2, ""), arguments)
             self.assertTrue(err, arguments)

@@ -231,6 +231,23 @@ class Formats(unittest.TestCase):
             self.assertEqual((code, out), (2, ""), err)
             self.assertIn(why, err)
 
+    def test_a_length_keeps_the_unit_of_its_name_beside_another_for_the_rest(self):
+        """Centres of a 2 mm tip in millimetres, its radius in metres."""
+        tip = 2.0
+        rows = ""
+        for i in range(222):
+            t = 5.5 * i / 221
+            a, b = 1e3 * A, 1e3 * B
+            x, y = a * math.cos(t), b * math.sin(t)
+            slope = math.hypot(b * math.cos(t), a * math.sin(t))
+            rows += f"{x + tip * b * math.cos(t) / slope!r},{y + tip * a * math.sin(t) / slope!r},{1e-3 * tip!r},left\n"
+        for names in ("x,y", "x_mm,y_mm"):
+            self.check(f"{names},tip_radius_m,material_side\n" + rows, "--unit", "mm")
+            self.assertIn("column tip_radius is taken in m, as its name says, not in the unit of --unit", self.notes)
+        # Who contradicts the coordinates' names contradicts them all.
+        self.check("x_m,y_m,tip_radius_m,material_side\n" + rows.replace(",0.002,", ",2,"), "--unit", "mm")
+        self.assertIn("the unit is taken from --unit, not from the columns' names", self.notes)
+
     def test_coordinates_of_two_units_are_refused(self):
         rows = "".join(f"{1e3 * x!r},{1e3 * y!r}\n" for x, y in WHOLE)
         for names in ("x_mm,y_m\n", "x [um],y [mm]\n", "x,y\nmm,m\n", "# x_mm,y_m\n"):
@@ -352,6 +369,14 @@ class Formats(unittest.TestCase):
         self.fit("x_m,y_m\n" + "".join(f"{x},{y}\n" for stroke in ellipse() for x, y in stroke))
         self.assertIn("1 jump of", self.err)
         self.assertIn("column patch", self.err)
+
+    def test_strokes_whose_rows_were_sorted_by_a_coordinate_are_told(self):
+        # Round an end of the ellipse, where both ways of the stroke have the same x.
+        strokes = ellipse(patches=((-0.8, 0.9), (2.3, 3.6)))
+        for order in (False, True):
+            rows = [(x, y, k) for k, stroke in enumerate(strokes) for x, y in (sorted(stroke) if order else stroke)]
+            self.fit("x_m,y_m,patch\n" + "".join(f"{x},{y},{k}\n" for x, y, k in rows))
+            self.assertEqual("go to and fro over" in self.err or "goes to and fro over" in self.err, order, self.err)
 
     def test_a_dozen_touches_in_no_order_are_of_the_part(self):
         turns = [k / 12 for k in range(12)]
