@@ -71,6 +71,7 @@ Doubt doubt_about(const Weighing& w, const Hypothesis& best, const VerdictOption
     return Doubt::TwoShapes;
   }
   const bool means_something =
+      !w.limit_is_as_good &&
       is_determined(best.shape, best.covariance, w.data.scale, options.determined_fraction);
   return means_something ? Doubt::None : Doubt::Undetermined;
 }

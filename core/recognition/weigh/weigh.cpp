@@ -130,6 +130,24 @@ double log_evidence_of_all(CurveClass model, double share, const Contenders& con
   return log_of_model - std::log(share);
 }
 
+/// As Weighing::limit_is_as_good: a line, of which every class has arcs, and the parabola, at which
+/// conics and cubics end. (Where they were asked for, the posterior compares them.)
+bool limit_is_as_good(CurveClass best, const Contenders& contenders,
+                      const EvidenceContext& context) {
+  const auto& fit = contenders.fits[best];
+  const auto leaves_as_little = [&](CurveClass limit) {
+    const auto& there = contenders.fits[limit];
+    const int more = degrees_of_freedom(best) - degrees_of_freedom(limit);
+    return there && !is_wanted(contenders.evidences, limit) && more > 0 &&
+           can_be_noise(std::max(context.likelihood.counted(there->chi2) -
+                                     context.likelihood.counted(fit->chi2),
+                                 0.0),
+                        more);
+  };
+  return fit && (leaves_as_little(CurveClass::Line) ||
+                 (best != CurveClass::Circle && leaves_as_little(CurveClass::Parabola)));
+}
+
 /// What the stages say, gathered. `arcs` and `sided` are those that `context` is of. `best_placed`:
 /// the best class, if it is placed on all points already; `stated`: the law before any was seen.
 Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders,
@@ -142,6 +160,7 @@ Weighing assemble_weighing(Arcs&& arcs, SidedFits&& sided, Contenders contenders
   w.margin_of_unclassified = margin_of_unclassified(contenders.fits, arcs.smooth.chi2,
                                                     context.likelihood, contenders.evidences);
   w.log_near_over_paths = contenders.evidences.log_near_over_paths;
+  w.limit_is_as_good = limit_is_as_good(w.best, contenders, context);
   w.rival_share = rival_share(contenders.fits, context.likelihood, contenders.evidences);
   w.inflation = seen.noise_inflation * seen.student_inflation + stated.form_inflation();
   const auto& best = contenders.fits[w.best];

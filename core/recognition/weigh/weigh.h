@@ -57,6 +57,9 @@ struct Weighing {
   double log_near_over_paths = kNoEvidence;
   /// Share of the spline's posterior in its mode on the other side of c = 0.
   double rival_share = 0.0;
+  /// Where nobody asked for a class that the best one is at one of its limits: whether that leaves
+  /// as little as noise lets it. Then nothing tells the shape of the best one.
+  bool limit_is_as_good = false;
   /// Of the best class on the reduced points, if it has any: input of moments_of_best().
   std::optional<ClassEvidence> best_evidence;
   std::optional<CanonicalFit> best_on_reduced;

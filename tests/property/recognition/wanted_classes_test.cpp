@@ -48,6 +48,42 @@ TEST(WantedClasses, AreToldAtTheirLimitsToo) {
   EXPECT_LE(none, test::most_of_poisson(expected_wrong));
 }
 
+/// Strokes along an edge, which every class has arcs for: its shape is not told.
+TEST(WantedClasses, AStraightPartTellsNoShapeOfAnother) {
+  constexpr double kSigma = 3e-5;
+  const int noises = test::stress_count(60);
+  for (const CurveClass curve_class : kCurveClasses) {
+    if (curve_class == CurveClass::Line) {
+      continue;
+    }
+    int recognized = 0;
+    for (int i = 0; i < noises; ++i) {
+      std::mt19937_64 rng = test::seeded_rng(test::test_seed(), {static_cast<std::uint32_t>(i)});
+      std::normal_distribution<double> normal(0.0, kSigma);
+      RecognizerOptions options;
+      options.classes = class_bit(curve_class);
+      Recognizer recognizer(options);
+      PatchContext context;
+      for (const double from : {-0.02, 0.01}) {
+        std::vector<ContactSample> samples;
+        for (int k = 0; k < 80; ++k) {
+          const double along = from + 0.01 * k / 79.0 + normal(rng);
+          samples.push_back(
+              {Vec2(0.8 * along, 0.6 * along) + normal(rng) * Vec2(-0.6, 0.8), kSigma, 0});
+        }
+        recognizer.add(context, samples);
+        ++context.patch;
+      }
+      const Recognition answer = recognizer.recognize();
+      recognized +=
+          answer.status == RecognitionStatus::Recognized && answer.shape.curve_class == curve_class
+              ? 1
+              : 0;
+    }
+    EXPECT_EQ(recognized, 0) << static_cast<int>(curve_class);
+  }
+}
+
 /// Strokes on one arm of a semi-cubical parabola, away from its cusp, that leave much of its shape
 /// open: arcs of others fit as well, by chance a little better, and far from where the class is
 /// expected.
