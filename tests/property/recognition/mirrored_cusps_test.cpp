@@ -11,7 +11,6 @@
 
 #include "core/curves/pose2.h"
 #include "core/curves/semi_cubical_parabola.h"
-
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/recognizer.h"

@@ -63,6 +63,17 @@ NearCubical near_cubical(double least_q, double most_q, double sigma, int count,
   return scene;
 }
 
+/// Its noise stated.
+Recognition answer_to(const NearCubical& scene, const RecognizerOptions& options = {}) {
+  std::vector<ContactSample> samples;
+  for (const Vec2& touched_m : scene.touched_m) {
+    samples.push_back({touched_m, scene.sigma_m, 0});
+  }
+  Recognizer recognizer(options);
+  recognizer.add({0, 0}, samples);
+  return recognizer.recognize();
+}
+
 /// Chi-square of the curve in the parameters that are told.
 double chi2_as_told(const ShapeParameters& shape, const Pose2& world_T_curve,
                     const NearCubical& scene) {
@@ -120,13 +131,7 @@ TEST(NearCubicalSplines, HaveWhatThePriorLeavesThem) {
     std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
     const double sigma = test::log_uniform(rng, 1e-5, 3e-3);
     const NearCubical scene = near_cubical(1e-4, 0.1, sigma, kCount, rng);
-    std::vector<ContactSample> samples;
-    for (const Vec2& touched_m : scene.touched_m) {
-      samples.push_back({touched_m, sigma, 0});
-    }
-    Recognizer recognizer;
-    recognizer.add({0, 0}, samples);
-    const Recognition answer = recognizer.recognize();
+    const Recognition answer = answer_to(scene);
     double of_spline = 0.0;
     for (const auto& hypothesis : answer.hypotheses) {
       of_spline +=
@@ -160,13 +165,7 @@ TEST(NearCubicalSplines, DeviationsAreAsStated) {
   for (int i = 0; i < scenes; ++i) {
     std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
     const NearCubical scene = near_cubical(3e-3, 2e-2, kSigma, kCount, rng);
-    std::vector<ContactSample> samples;
-    for (const Vec2& touched_m : scene.touched_m) {
-      samples.push_back({touched_m, kSigma, 0});
-    }
-    Recognizer recognizer;
-    recognizer.add({0, 0}, samples);
-    const Recognition answer = recognizer.recognize();
+    const Recognition answer = answer_to(scene);
     if (answer.shape.curve_class != CurveClass::CubicSpline || !answer.covariance.allFinite()) {
       continue;
     }
@@ -194,15 +193,9 @@ TEST(NearCubicalSplines, CubicalParabolasGivenAsSplinesHaveTheirPoints) {
   for (int i = 0; i < scenes; ++i) {
     std::mt19937_64 rng = test::test_rng(static_cast<std::uint64_t>(i));
     const NearCubical scene = near_cubical(0.0, 0.0, kSigma, kCount, rng);
-    std::vector<ContactSample> samples;
-    for (const Vec2& touched_m : scene.touched_m) {
-      samples.push_back({touched_m, kSigma, 0});
-    }
     RecognizerOptions options;
     options.classes = class_bit(CurveClass::CubicSpline);
-    Recognizer recognizer(options);
-    recognizer.add({0, 0}, samples);
-    const Recognition answer = recognizer.recognize();
+    const Recognition answer = answer_to(scene, options);
     if (answer.status != RecognitionStatus::Recognized ||
         answer.shape.curve_class != CurveClass::CubicSpline) {
       continue;

@@ -133,7 +133,7 @@ TEST(TouchedNormals, ErrorsHaveTheLawOfTheirCovariance) {
   auto rng = test::test_rng();
   constexpr int kScenes = 300;
   Part part;
-  part.sigma_m = 5e-5;
+  part.sigma_m = 3e-4;
   double squares = 0.0;
   double narrower = 0.0;
   for (int scene = 0; scene < kScenes; ++scene) {
