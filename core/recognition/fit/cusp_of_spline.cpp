@@ -1,5 +1,6 @@
 #include "core/recognition/fit/cusp_of_spline.h"
 
+#include <utility>
 #include <vector>
 
 #include "core/curves/algebraic/polynomial_curve.h"
@@ -8,6 +9,23 @@
 #include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
+namespace {
+
+/// The optimum of a class on all points from such a curve.
+std::optional<ClassFit> polished_from(CurveClass curve_class, PolynomialFit start,
+                                      const FitData& data, WorkBudget& work) {
+  ClassFit fit;
+  fit.curve_class = curve_class;
+  fit.chi2_of_all = fit.on_all = true;
+  fit.polynomial = std::move(start);
+  auto found = polish(fit, data, work);
+  if (found) {
+    found->polished = true;
+  }
+  return found;
+}
+
+}  // namespace
 
 std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& data,
                                        WorkBudget& work) {
@@ -16,34 +34,20 @@ std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& da
   if (!vertex) {
     return std::nullopt;
   }
-  ClassFit fit;
-  fit.curve_class = CurveClass::SemiCubicalParabola;
-  fit.chi2_of_all = fit.on_all = true;
-  fit.polynomial = from;
-  fit.polynomial->coefficients = PolynomialCurve2{from.coefficients}.shifted(*vertex).coefficients;
-  fit.polynomial->coefficients.col(1).setZero();
-  for (double& t : fit.polynomial->t) {
+  PolynomialFit start = from;
+  start.coefficients = PolynomialCurve2{from.coefficients}.shifted(*vertex).coefficients;
+  start.coefficients.col(1).setZero();
+  for (double& t : start.t) {
     t -= *vertex;
   }
-  auto found = polish(fit, data, work);
-  if (found) {
-    found->polished = true;
-  }
-  return found;
+  return polished_from(CurveClass::SemiCubicalParabola, std::move(start), data, work);
 }
 
 std::optional<ClassFit> spline_from_limit(const ClassFit& limit, const FitData& data,
                                           WorkBudget& work) {
-  ClassFit fit;
-  fit.curve_class = CurveClass::CubicSpline;
-  fit.chi2_of_all = fit.on_all = true;
-  fit.polynomial = limit.polynomial;
-  normalise_parameter(PolynomialModel::CubicSpline, &*fit.polynomial);
-  auto found = polish(fit, data, work);
-  if (found) {
-    found->polished = true;
-  }
-  return found;
+  PolynomialFit start = *limit.polynomial;
+  normalise_parameter(PolynomialModel::CubicSpline, &start);
+  return polished_from(CurveClass::CubicSpline, std::move(start), data, work);
 }
 
 ClassFit placed_on_reduced(const ClassFit& on_all, const FitData& reduced, WorkBudget& work) {

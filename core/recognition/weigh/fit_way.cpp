@@ -13,7 +13,6 @@
 #include "core/recognition/posterior/likelihood_of.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/own_directions.h"
-#include "core/recognition/weigh/probable_cusp.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
@@ -186,11 +185,9 @@ SideChoice fit_along(FitData touches, std::span<const int> sides, const SideCont
       start_at(on_all ? *on_all : *choice.refined, &start);
     }
     const bool misled = round == 0 && was_sought_elsewhere(choice);
-    ClassFits found =
-        fit_classes(nearer, by.work, misled ? nullptr : &start, by.classes, by.out_of_reach);
     ClassFits again =
-        along_own(with_probable_cusp(std::move(found), nearer, by.likelihood.inflation(), by.work),
-                  nearer, &choice.fits);
+        along_own(fit_classes_to(nearer, misled ? nullptr : &start, by, by.out_of_reach), nearer,
+                  &choice.fits);
     const double before = least_left(choice, smooth);
     SideChoice next = choice_of(sides, std::move(again), std::move(nearer), by);
     if (!agrees(next, smooth) && disagreement(next, smooth) > disagreement(choice, smooth)) {

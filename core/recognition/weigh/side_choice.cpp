@@ -84,13 +84,16 @@ void refine_settled(const SideContext& by, SideChoice* choice) {
 
 }  // namespace
 
+ClassFits fit_classes_to(const FitData& reduced, const WarmStart* start, const SideContext& by,
+                         double out_of_reach) {
+  return with_probable_cusp(fit_classes(reduced, by.work, start, by.classes, out_of_reach), reduced,
+                            by.likelihood.inflation(), by.work);
+}
+
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
                            const FitData& reduced, const SideContext& by, double out_of_reach) {
   const SidedStart* start = start_for(starts, sides);
-  return with_probable_cusp(
-      fit_classes(reduced, by.work, start != nullptr ? &start->start : nullptr, by.classes,
-                  out_of_reach),
-      reduced, by.likelihood.inflation(), by.work);
+  return fit_classes_to(reduced, start != nullptr ? &start->start : nullptr, by, out_of_reach);
 }
 
 bool settle_candidate(const SideContext& by, ModesOf modes, SideChoice* choice) {

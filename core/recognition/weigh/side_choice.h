@@ -53,6 +53,10 @@ struct SideContext {
   bool directions_told = false;
 };
 
+/// The classes as fit_classes() has them, with the more probable cusp (probable_cusp.h).
+ClassFits fit_classes_to(const FitData& reduced, const WarmStart* start, const SideContext& by,
+                         double out_of_reach);
+
 /// The classes followed from where they were with the tips on these sides, or sought.
 ClassFits fit_classes_from(std::span<const SidedStart> starts, std::span<const int> sides,
                            const FitData& reduced, const SideContext& by,
