@@ -1,5 +1,7 @@
 #include "core/recognition/fit/cusp_of_spline.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -10,6 +12,11 @@
 
 namespace palpate {
 namespace {
+
+/// The bend that a spline starts with in place of a cusp, in radii of the tip that rolls about it.
+/// (The feet of the roll all lie on the cusp, which has no direction to leave it by. A bend gives
+/// them one. If it is far sharper than the tip, that goes about both alike.)
+constexpr double kStartRadius = 1e-2;
 
 /// The optimum of a class on all points from such a curve.
 std::optional<ClassFit> polished_from(CurveClass curve_class, PolynomialFit start,
@@ -23,6 +30,28 @@ std::optional<ClassFit> polished_from(CurveClass curve_class, PolynomialFit star
     found->polished = true;
   }
   return found;
+}
+
+double largest_offset(const FitData& data) {
+  return std::max_element(data.points.begin(), data.points.end(),
+                          [](const FitPoint& a, const FitPoint& b) { return a.offset < b.offset; })
+      ->offset;
+}
+
+/// The spline that goes round the cusp of a semi-cubical parabola in a bend of that radius.
+PolynomialFit rounded_at_cusp(PolynomialFit cusp, double radius, const FitData& data,
+                              WorkBudget& work) {
+  PolynomialCoefficients& c = cusp.coefficients;
+  const Vec2 across = Vec2(c.col(3)).normalized();
+  // Near the cusp the curve goes by t^2 along the axis, and by v t across: of curvature 2 along /
+  // v^2.
+  const double along = std::abs(cross(across, Vec2(c.col(2))));
+  c.col(1) = std::sqrt(2.0 * along * radius) * across;
+  work.spend(WorkKind::SoughtFoot, data.points.size());
+  for (std::size_t i = 0; i < data.points.size(); ++i) {
+    cusp.t[i] = nearest_parameter(c, data.points[i].position);
+  }
+  return cusp;
 }
 
 }  // namespace
@@ -46,6 +75,9 @@ std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& da
 std::optional<ClassFit> spline_from_limit(const ClassFit& limit, const FitData& data,
                                           WorkBudget& work) {
   PolynomialFit start = *limit.polynomial;
+  if (limit.curve_class == CurveClass::SemiCubicalParabola && has_tips(data.points)) {
+    start = rounded_at_cusp(std::move(start), kStartRadius * largest_offset(data), data, work);
+  }
   normalise_parameter(PolynomialModel::CubicSpline, &start);
   return polished_from(CurveClass::CubicSpline, std::move(start), data, work);
 }

@@ -8,6 +8,7 @@
 
 #include "core/curves/cubic_spline.h"
 #include "core/numerics/probability/negligible.h"
+#include "core/recognition/fit/cusp_of_spline.h"
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/spline_limits.h"
 #include "core/recognition/posterior/likelihood_of.h"
@@ -74,11 +75,24 @@ void start_at(const ClassFit& fit, WarmStart* start) {
   }
 }
 
+/// Whether a spline is one of that class at one of its limits.
+bool is_limit_of_spline(CurveClass curve_class) {
+  return curve_class == CurveClass::Parabola || curve_class == CurveClass::CubicalParabola ||
+         curve_class == CurveClass::SemiCubicalParabola;
+}
+
 /// The class that has all points as noise lets it, whatever the reduced points with their
 /// directions say of it: where a tip rolls about a cusp, these are what keeps them from it. nullopt
 /// if none.
 std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext& by) {
   std::optional<ClassFit> best;
+  std::optional<ClassFit> limit;  // of the cubics, what all points leave least of
+  const auto keep = [&](std::optional<ClassFit> on_all) {
+    if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
+        (!best || on_all->chi2 < best->chi2)) {
+      best = std::move(on_all);
+    }
+  };
   const auto take = [&](const ClassFit& fit) {
     if (fit.at_limit || fit.chi2 > by.out_of_reach || !by.work.allows()) {
       return;
@@ -86,10 +100,11 @@ std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext&
     auto on_all =
         refine_on_all(settled(fit, points_of(fit, choice.reduced), RivalOf::Other, by.work),
                       by.arcs.smooth, by.arcs.data, kOnAllEffort, by.work, RivalOf::Best);
-    if (on_all && fits_well(on_all->chi2, residual_count(by.arcs.data)) &&
-        (!best || on_all->chi2 < best->chi2)) {
-      best = std::move(on_all);
+    if (on_all && on_all->on_all && is_limit_of_spline(fit.curve_class) &&
+        (!limit || on_all->chi2 < limit->chi2)) {
+      limit = on_all;
     }
+    keep(std::move(on_all));
   };
   for (const auto& fit : choice.fits) {
     if (fit) take(*fit);
@@ -104,6 +119,9 @@ std::optional<ClassFit> best_on_all(const SideChoice& choice, const SideContext&
                           by.out_of_reach, by.work);
     cusp.chi2 = cusp.polynomial->chi2;
     take(cusp);
+  }
+  if (!best && limit && by.work.allows()) {
+    keep(spline_from_limit(*limit, by.arcs.data, by.work));
   }
   return best;
 }
