@@ -3,9 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <random>
+#include <utility>
 #include <vector>
+
+#include "core/recognition/samples/cleaned/clean_patches.h"
+#include "tests/support/unbounded_work.h"
 
 namespace palpate {
 namespace {
@@ -201,6 +206,42 @@ TEST(Passes, HaveAllSamplesInTheDirectionOfTheFirst) {
     before += n;
   }
   EXPECT_EQ(before, patch.samples.size());
+}
+
+// Where few samples lie between two turns and spikes among them, both turns were once taken to the
+// same sample, with a pass of nothing between them.
+TEST(Passes, HaveSamplesOfTheirOwnAmongSpikes) {
+  constexpr double kSigma = 4e-6;  // [m]
+  std::mt19937_64 rng(7);
+  std::uniform_int_distribution<int> some(1, 10);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  std::normal_distribution<double> noise(0.0, kSigma);
+  std::size_t cut = 0;
+  for (int scene = 0; scene < 6'000; ++scene) {
+    StoredPatch patch;
+    const double spikes = 0.3 * share(rng);
+    double from = 0.0;
+    for (int passes = some(rng); passes >= 0; --passes) {
+      const double to = share(rng);
+      const int each = some(rng);
+      for (int i = 0; i < each; ++i) {
+        StoredSample& sample = patch.samples.emplace_back();
+        const double x = noise(rng);
+        sample.position_m =
+            0.5 * circle(0.1 * (from + (to - from) * i / each)) + Vec2(x, noise(rng));
+        if (share(rng) < spikes) sample.position_m += 0.02 * Vec2(share(rng), share(rng));
+        sample.sigma_m = kSigma;
+      }
+      from = to;
+    }
+    patch.newest_m = patch.samples.back().position_m;
+    CleanPatches clean;
+    clean.update({&patch, 1}, {.false_alarm = 1e-3}, test::unbounded_work());
+    for (const StoredPatch& pass : clean.moved()) ASSERT_FALSE(pass.samples.empty()) << scene;
+    EXPECT_EQ(clean.moved_count() + clean.dwelling_count(), patch.samples.size()) << scene;
+    cut += clean.moved().size() > 1 ? 1 : 0;
+  }
+  EXPECT_GT(cut, 0U);
 }
 
 }  // namespace

@@ -22,11 +22,10 @@ StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_s
                       : without_dwells(patch, default_sigma_m);
 }
 
-/// Converts `turns`, found without spikes, to indices among all samples. The turn is the farthest
-/// sample on the way, even if it was taken for a spike.
-std::vector<std::size_t> among_all(std::span<const StoredSample> all,
-                                   const std::vector<bool>& is_spike,
-                                   std::span<const std::size_t> turns) {
+/// Converts turns that were found without spikes to indices among all samples. A turn is the
+/// farthest sample on the way, even if it was taken for a spike.
+Reversals among_all(std::span<const StoredSample> all, const std::vector<bool>& is_spike,
+                    const Reversals& turns) {
   std::vector<std::size_t> kept;
   kept.reserve(all.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -34,16 +33,24 @@ std::vector<std::size_t> among_all(std::span<const StoredSample> all,
   }
   // So many samples farther back, noise does not reverse the direction of the way.
   constexpr std::size_t kBehind = 4;
-  std::vector<std::size_t> result;
-  for (const std::size_t k : turns) {
-    const std::size_t behind = kept[k - 1 - std::min(k - 1, kBehind)];
+  Reversals result;
+  std::size_t before = 0;  // the first sample kept after the turn before
+  const auto add = [&](std::size_t k, std::vector<std::size_t>* to) {
+    const std::size_t behind = kept[std::max(before, k - 1 - std::min(k - 1, kBehind))];
     const Vec2 way = all[kept[k - 1]].position_m - all[behind].position_m;
     std::size_t turn = behind;
     for (std::size_t i = behind + 1; i < kept[k]; ++i) {
       if ((all[i].position_m - all[turn].position_m).dot(way) > 0.0) turn = i;
     }
-    result.push_back(turn + 1);
+    to->push_back(turn + 1);
+    before = k;
+  };
+  auto cusp = turns.cusps.begin();
+  for (const std::size_t k : turns.returns) {
+    for (; cusp != turns.cusps.end() && *cusp < k; ++cusp) add(*cusp, &result.cusps);
+    add(k, &result.returns);
   }
+  for (; cusp != turns.cusps.end(); ++cusp) add(*cusp, &result.cusps);
   return result;
 }
 
@@ -103,8 +110,8 @@ std::vector<StoredPatch> each_without_spikes(std::span<const StoredPatch> passes
 Reversals turns_without(std::vector<bool> is_spike, std::span<const std::size_t> cusps,
                         std::span<const StoredSample> samples, double default_sigma_m) {
   for (const std::size_t cusp : cusps) is_spike[cusp - 1] = true;
-  const Reversals turns = reversals_of(without_spikes(samples, is_spike), default_sigma_m);
-  return {among_all(samples, is_spike, turns.returns), among_all(samples, is_spike, turns.cusps)};
+  return among_all(samples, is_spike,
+                   reversals_of(without_spikes(samples, is_spike), default_sigma_m));
 }
 
 /// Cuts a patch into passes, with and without spikes. Among many spikes some follow each other in
