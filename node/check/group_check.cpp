@@ -187,9 +187,12 @@ std::vector<Finding> check_group(const ContactGroup& group, double sigma_m, Chec
   return findings;
 }
 
+std::string whose(const Finding& finding) {
+  return finding.object + (finding.probe.empty() ? "" : finding.probe + ": ");
+}
+
 std::string sentence_of(const Finding& finding) {
-  return (finding.probe.empty() ? "" : finding.probe + ": ") + finding.what +
-         (finding.cure.empty() ? "" : ": " + finding.cure);
+  return whose(finding) + finding.what + (finding.cure.empty() ? "" : ": " + finding.cure);
 }
 
 }  // namespace palpate

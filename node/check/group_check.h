@@ -20,6 +20,9 @@ std::optional<Finding> too_few_places(const ContactGroup& group, std::size_t pat
 std::vector<Finding> check_group(const ContactGroup& group, double sigma_m = 0.0,
                                  CheckedSource source = CheckedSource::File);
 
+/// Whose a finding is, before it: "group g, object 1: probe: "; empty if all samples'.
+std::string whose(const Finding& finding);
+
 /// A finding as a sentence: what, and the cure.
 std::string sentence_of(const Finding& finding);
 

@@ -24,15 +24,27 @@ std::vector<double> spacings(const std::vector<Vec2>& positions) {
   return result;
 }
 
+/// How often something was seen, and where first.
+struct Seen {
+  std::size_t count = 0;
+  std::uint32_t first_patch = 0;
+
+  void add(std::size_t times, const CheckedPatch& patch) {
+    if (count == 0) first_patch = patch.number;
+    count += times;
+  }
+};
+
 /// What the patches of a probe show together.
 struct SeenInPatches {
   double extent = 0.0;  ///< of a patch
   std::size_t longest = 0;
-  std::size_t jumps = 0;
-  std::size_t unordered = 0;
-  std::size_t unordered_within = 0;  ///< to and fro over the patch alone
+  std::size_t patches = 0;
+  Seen jumps;
+  Seen unordered;
+  Seen unordered_within;  ///< to and fro over the patch alone
   std::size_t repeated = 0;
-  std::size_t holes = 0;
+  Seen holes;
   double widest = 0.0;  ///< hole, in typical spacings
   std::size_t samples = 0;
   double noise_ratio = 0.0;  ///< largest of estimated over stated, or of stated over estimated
@@ -60,8 +72,8 @@ std::size_t jumps_of(const std::vector<Vec2>& moved, double typical) {
   return jumps;
 }
 
-void see_holes(const std::vector<double>& steps, double typical, const NoiseEstimate& noise,
-               SeenInPatches* seen) {
+void see_holes(const CheckedPatch& patch, const std::vector<double>& steps, double typical,
+               const NoiseEstimate& noise, SeenInPatches* seen) {
   // Noise alone widens a spacing too: by three standard deviations of a difference at most.
   constexpr double kHoleSpacings = 3.0;
   constexpr double kNoiseWidths = 3.0;
@@ -69,7 +81,7 @@ void see_holes(const std::vector<double>& steps, double typical, const NoiseEsti
       noise.status == LocalStatus::Ok ? kNoiseWidths * std::sqrt(2.0) * noise.sigma_m : 0.0;
   for (const double step : steps) {
     if (step > kHoleSpacings * typical + by_noise && step <= kJumpSpacings * typical) {
-      ++seen->holes;
+      seen->holes.add(1, patch);
       seen->widest = std::max(seen->widest, step / typical);
     }
   }
@@ -117,13 +129,13 @@ void see_patch(const CheckedPatch& patch, double extent_of_all, SeenInPatches* s
   // A stroke no longer than its noise leads to and fro as well.
   constexpr double kLongStroke = 20.0;  // of the stated noise
   if (leads_to_and_fro(moved, extent_of_all)) {
-    ++seen->unordered;
+    seen->unordered.add(1, patch);
   } else if (extent > kLongStroke * patch.stated_sigma_m() && leads_to_and_fro(moved, extent)) {
-    ++seen->unordered_within;
+    seen->unordered_within.add(1, patch);
   }
-  seen->jumps += jumps_of(moved, typical);
+  seen->jumps.add(jumps_of(moved, typical), patch);
   const NoiseEstimate noise = estimate_noise(patch.positions);
-  see_holes(steps, typical, noise, seen);
+  see_holes(patch, steps, typical, noise, seen);
   seen->coarsest = std::max(seen->coarsest, typical / std::max(extent, typical));
   see_noise(patch, noise, seen);
 }
@@ -135,6 +147,7 @@ SeenInPatches see_patches(const std::vector<CheckedPatch>& patches) {
   }
   const double extent_of_all = box.isEmpty() ? 0.0 : box.diagonal().norm();
   SeenInPatches seen;
+  seen.patches = patches.size();
   for (const CheckedPatch& patch : patches) {
     see_patch(patch, extent_of_all, &seen);
   }
@@ -176,10 +189,11 @@ class PatchFindings {
 
   /// Strokes that jump, or lead to and fro.
   void judge_order() const {
-    if (seen_.jumps > 0) {
+    if (seen_.jumps.count > 0) {
       add_spoiling(
           Severity::Error,
-          counted(seen_.jumps, "jump") + " of more than 20 spacings within a patch",
+          counted(seen_.jumps.count, "jump") + " of more than 20 spacings within a patch" +
+              first(seen_.jumps),
           cure_of(
               source_, "count patch up by one at each lift-off",
               "give each stroke a patch number of its own (column patch, or an empty line "
@@ -188,11 +202,11 @@ class PatchFindings {
               "its own (Recognizer.add); points in no order "
               "along the part are touches=True"));
     }
-    if (seen_.unordered > 0) {
+    if (seen_.unordered.count > 0) {
       add_spoiling(
           Severity::Error,
-          counted(seen_.unordered, "patch goes", "patches go") +
-              " to and fro over the whole extent",
+          counted(seen_.unordered.count, "patch goes", "patches go") +
+              " to and fro over the whole extent" + first(seen_.unordered),
           cure_of(source_,
                   "send the samples of a patch in their order along the part; single touches are "
                   "patches of their own",
@@ -201,10 +215,10 @@ class PatchFindings {
                   "touches=True"));
       findings_->back().has_no_order = true;
     }
-    if (seen_.unordered_within > 0) {
+    if (seen_.unordered_within.count > 0) {
       add_spoiling(Severity::Warning,
-                   counted(seen_.unordered_within, "patch goes", "patches go") +
-                       " to and fro over its own extent",
+                   counted(seen_.unordered_within.count, "patch goes", "patches go") +
+                       " to and fro over its own extent" + first(seen_.unordered_within),
                    cure_of(source_,
                            "send the samples of a patch in their order along the part, unless it "
                            "is no longer than their noise",
@@ -236,12 +250,12 @@ class PatchFindings {
   /// Holes and repeats.
   void judge_gaps() const {
     constexpr double kFewHoles = 0.01;  // of the samples: dropouts that do no harm
-    if (seen_.holes > 0) {
-      add(static_cast<double>(seen_.holes) > kFewHoles * static_cast<double>(seen_.samples)
+    if (seen_.holes.count > 0) {
+      add(static_cast<double>(seen_.holes.count) > kFewHoles * static_cast<double>(seen_.samples)
               ? Severity::Warning
               : Severity::Note,
-          counted(seen_.holes, "hole") + " of 3 to " + with_digits(seen_.widest, 2) +
-              " typical spacings within a patch",
+          counted(seen_.holes.count, "hole") + " of 3 to " + with_digits(seen_.widest, 2) +
+              " typical spacings within a patch" + first(seen_.holes),
           cure_of(
               source_,
               "publish every contact at an even pace along the arc; a real lift-off needs a new "
@@ -291,6 +305,12 @@ class PatchFindings {
   }
 
  private:
+  /// Which patch of several shows it, or shows it first.
+  std::string first(const Seen& seen) const {
+    if (seen_.patches < 2) return "";
+    return (seen.count > 1 ? " (first in patch " : " (patch ") + std::to_string(seen.first_patch) +
+           ")";
+  }
   void add(Severity severity, std::string what, std::string cure) const {
     findings_->push_back({severity, probe_, std::move(what), std::move(cure)});
   }

@@ -22,6 +22,7 @@ struct Finding {
   /// it.
   bool spoils_answer = false;
   bool has_no_order = false;  ///< rows of a stroke lead to and fro instead of along the part
+  std::string object = {};    ///< "group g, object 1: ", where there are several; empty = alone
 };
 
 struct CheckedNormal {

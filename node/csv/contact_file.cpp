@@ -15,6 +15,7 @@
 #include "node/csv/text_encoding.h"
 #include "node/csv/text_lines.h"
 #include "node/files/bounded_file.h"
+#include "node/files/counted.h"
 
 namespace palpate {
 namespace {
@@ -117,6 +118,16 @@ std::string counts_instead(const csv::PointTable& points, const ContactFileOptio
          "fit)";
 }
 
+/// Where the file has another tip radius than was said: that it counts, or nothing.
+std::string note_of_unused_tip(const ContactTable& table, double tip_radius_m) {
+  const auto others = std::count_if(
+      table.rows.begin(), table.rows.end(),
+      [&](const ContactRow& row) { return row.context.tip_radius_m != tip_radius_m; });
+  if (tip_radius_m == 0.0 || others == 0) return {};
+  return "--tip-radius is not used for " + counted(static_cast<std::uint64_t>(others), "sample") +
+         ": the tip radius that the file states counts";
+}
+
 /// Numbers the rows of each probe and object as patches of their own.
 void part_into_touches(ContactTable& table) {
   std::map<std::tuple<std::size_t, std::uint64_t, std::size_t>, std::uint32_t> counts;
@@ -165,6 +176,9 @@ Read parse_contact_file(std::string_view text, std::string_view name,
     file.notes.push_back(plane.note);
   } else if (options.plane != PointPlane::Varying) {
     return Read::fail(std::string(name) + ": has two coordinates: --plane chooses among three");
+  }
+  if (std::string note = note_of_unused_tip(file.table, options.tip_radius_m); !note.empty()) {
+    file.notes.push_back(std::move(note));
   }
   if (options.touches.value_or(points.is_probe_log)) {
     if (!options.touches) {

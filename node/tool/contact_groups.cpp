@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "node/files/counted.h"
+#include "node/files/printable.h"
 
 namespace palpate {
 
@@ -37,6 +38,10 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
     if (detailed) group.runs.back().details.push_back(row.detail);
   }
   return groups;
+}
+
+std::string object_of(const ContactGroup& group) {
+  return "group " + printable_path(group.name) + ", object " + std::to_string(group.object) + ": ";
 }
 
 std::string note_of_unused_detail(const ContactGroup& group) {

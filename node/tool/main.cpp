@@ -59,6 +59,7 @@ CLI::Validator curve_class_name() {
 
 CLI::Validator svg_file() {
   const auto check = [](const std::string& text) -> std::string {
+    if (text == "-") return "\"-\" names no file: pictures do not go to standard output";
     const std::string ending = std::filesystem::path(text).extension();
     const bool good = ending.empty() || CLI::detail::to_lower(ending) == ".svg";
     return good ? "" : "\"" + text + "\" does not end in .svg: pictures are written as SVG only";

@@ -123,6 +123,9 @@ class Replays(unittest.TestCase):
             self.assertIn("4 messages, 40 samples", err)
             self.assertIn("3 messages left out", err)
             wait_for(planner, lambda a: a.sample_count == 40)
+            code, _, err = self.replay(bus, file, "--unit", "mm")
+            self.assertEqual(code, 2, err)
+            self.assertIn("--unit: for a file of points", err)
             # A damaged byte costs its message, and is said.
             damaged = bytearray(file.read_bytes())
             damaged[len(damaged) // 2] ^= 1

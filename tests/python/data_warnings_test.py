@@ -52,9 +52,11 @@ class DataWarnings(unittest.TestCase):
             self.assertEqual(self.warned(points, **arguments)[1], "")
 
     def test_strokes_in_one_patch_and_lost_samples_are_jumps(self):
-        for points in (np.concatenate(STROKES), [np.delete(STROKES[0], slice(40, 65), axis=0), STROKES[1]]):
+        lost = np.delete(STROKES[1], slice(40, 65), axis=0)
+        for points, patch in ((np.concatenate(STROKES), ""), ([STROKES[0], lost], r" \(patch 1\)")):
             said = self.warned(points)[1]
-            self.assertRegex(said, "^1 jump of more than 20 spacings within a patch: give each stroke an array of its own")
+            self.assertRegex(said, f"^1 jump of more than 20 spacings within a patch{patch}: "
+                             "give each stroke an array of its own")
             self.assertNotIn("--", said)  # no options of a program that nobody runs
 
     def test_points_in_no_order_are_told(self):

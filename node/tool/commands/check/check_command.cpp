@@ -36,8 +36,7 @@ int print(const std::vector<Finding>& findings, const std::string& unit_note = "
   bool good = true;
   bool doubtful = false;
   for (const Finding& finding : findings) {
-    std::cout << name_of(finding.severity) << "  "
-              << (finding.probe.empty() ? "" : finding.probe + ": ") << finding.what
+    std::cout << name_of(finding.severity) << "  " << whose(finding) << finding.what
               << (finding.cure.empty() ? "" : "\n         " + finding.cure) << "\n";
     good = good && finding.severity != Severity::Error;
     doubtful = doubtful || (finding.severity == Severity::Warning && finding.spoils_answer);
@@ -75,15 +74,17 @@ int check_file(const CheckCommand& command) {
       patches.insert({run.context.probe, run.context.patch});
     }
     findings.push_back({Severity::Note, "",
-                        "group " + group.name + ", object " + std::to_string(group.object) + ": " +
-                            counted(samples, "sample") + " in " +
+                        object_of(group) + counted(samples, "sample") + " in " +
                             counted(patches.size(), "patch", "patches"),
                         ""});
-    if (auto few = too_few_places(group, patches.size())) findings.push_back(*std::move(few));
-    for (Finding& finding : check_group(group)) findings.push_back(std::move(finding));
-    if (auto approach = judge_approaches(group, groups.size() == 1)) {
-      findings.push_back(*std::move(approach));
-    }
+    const bool is_alone = groups.size() == 1;
+    const auto say = [&](Finding finding) {
+      finding.object = is_alone ? "" : object_of(group);
+      findings.push_back(std::move(finding));
+    };
+    if (auto few = too_few_places(group, patches.size())) say(*std::move(few));
+    for (Finding& finding : check_group(group)) say(std::move(finding));
+    if (auto approach = judge_approaches(group, is_alone)) say(*std::move(approach));
   }
   sort_findings(&findings);
   return print(findings, unit_note_of(*file.value));

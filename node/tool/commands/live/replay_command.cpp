@@ -7,7 +7,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "node/client/contact_publisher.h"
 #include "node/files/counted.h"
@@ -36,6 +38,7 @@ struct ReplayCommand {
   std::size_t batch_samples = 10;
   double sigma_m = 0.0;
   FileFlags flags;
+  std::vector<std::string> for_points;  ///< options given that a recording has no use for
 };
 
 struct TimedMessage {
@@ -224,6 +227,11 @@ int run(const ReplayCommand& command) {
   std::vector<TimedMessage> batches;
   Messages next;
   if (is_recording(command.file)) {
+    if (!command.for_points.empty()) {
+      return complain(command.for_points.front() + ": for a file of points, and " + command.file +
+                          " is a recording, played as it was recorded",
+                      kUsage);
+    }
     recording.emplace(command.file);
     if (const std::string error = recording->open(); !error.empty()) {
       return complain(error, kUsage);
@@ -341,7 +349,13 @@ void add_replay_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->type_name("METRES");
   add_file_flags(*command, replay->flags);
-  command->callback([replay, &exit_code] { exit_code = run(*replay); });
+  command->callback([replay, command, &exit_code] {
+    for (const char* option : {"--rate", "--batch", "--sigma", "--unit", "--plane", "--touches",
+                               "--strokes", "--tip-radius"}) {
+      if (command->count(option) > 0) replay->for_points.emplace_back(option);
+    }
+    exit_code = run(*replay);
+  });
 }
 
 }  // namespace palpate

@@ -129,6 +129,9 @@ int run(const CalibrateCommand& calibrate) {
   if (!probes.empty()) origin.probe = *probes.begin();
   const Qualification result = qualify(*artefact.value, *recordings.value, calibrate.options);
   if (!is_estimate(result.status)) return complain(why_not(result.status), kFailed);
+  if (calibrate.options.bore && !result.bore) {
+    complain("--bore is not used: the tips lie outside of a ring, not within a bore", kDone);
+  }
   if (const std::string note = note_of_depth(result); !note.empty()) complain(note, kDone);
   const v1::Probe probe = probe_message(result, origin);
   std::cout << (calibrate.format == "json" ? json_line(probe) : qualification_text(result, origin));

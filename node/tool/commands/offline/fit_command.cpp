@@ -5,6 +5,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -49,6 +50,8 @@ void add_recognizer_flags(CLI::App& command, FitRequest& fit) {
     } else {
       option->capture_default_str()->type_name("NUMBER")->check(
           number_within(info.lowest, info.highest));
+      // memory_for(): a file is there as a whole.
+      if (std::string_view(info.name) == "most_patches") option->default_str("all of a file");
     }
   });
 }

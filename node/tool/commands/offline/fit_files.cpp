@@ -12,12 +12,14 @@ namespace {
 
 /// Says what there is to say of an input beside its answer.
 void tell_of(FitInput* input, const FitRequest& fit) {
+  const std::string whose =
+      input->group.file + ": " + (input->is_alone ? "" : object_of(input->group));
   for (const std::string& warning : input->warnings) {
-    complain("WARNING: " + input->group.file + ": " + warning, kDone);
+    complain("WARNING: " + whose + warning, kDone);
   }
   std::string note = note_of_unused_sigma(input->group, fit.recognizer.sigma_m);
   if (!note.empty()) {
-    complain(input->group.file + ": " + note, kDone);
+    complain(whose + note, kDone);
     // Placing says its notes here, not beside its answers.
     if (fit.part.empty()) input->notes.push_back(std::move(note));
   }

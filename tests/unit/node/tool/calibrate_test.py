@@ -52,6 +52,13 @@ class Calibrate(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
 
+    def test_a_bore_that_the_tips_contradict_is_told(self):
+        ring = ellipse(0.025, 0.025, 1)
+        code, out, err = run(TOOL, "calibrate", "--circle", "0.025", "--bore", "-", text_in=ring)
+        self.assertEqual(code, 0, err)
+        self.assertIn("--bore is not used", err)
+        self.assertNotIn("--bore", run(TOOL, "calibrate", "--circle", "0.025", "-", text_in=ring)[2])
+
     def test_help_says_the_unit_of_every_artefact(self):
         _, out, _ = run(TOOL, "calibrate", "--help")
         for artefact, unit in (("circle A", "[m]"), ("ellipse A,B", "[m]"), ("parabola A", "in powers of metres"),

@@ -430,6 +430,27 @@ class Formats(unittest.TestCase):
                  "--touches", "--tip-radius", 0.01)
         self.assertNotIn("larger than all", self.err)
 
+    def test_a_tip_radius_that_the_file_has_already_counts_and_that_is_told(self):
+        text = "x_mm,y_mm,tip_radius_mm\n" + "".join(f"{1e3 * x},{1e3 * y},2\n" for x, y in WHOLE)
+        self.fit(text, "--tip-radius", 0.003)
+        self.assertIn(f"--tip-radius is not used for {len(WHOLE)} samples: the tip radius that the file states counts", self.notes)
+        self.fit(text, "--tip-radius", 0.002)
+        self.assertNotIn("--tip-radius is not used", self.err)
+
+    def test_what_is_told_names_its_object_and_patch(self):
+        text = "object,patch,x_m,y_m\n"
+        for thing in (3, 8):
+            for k, stroke in enumerate(ellipse(patches=((-0.8, 0.9), (2.3, 3.6)))):
+                rows = sorted(stroke) if (thing, k) == (8, 0) else stroke
+                text += "".join(f"{thing},{k},{x!r},{y!r}\n" for x, y in rows)
+        path = self.folder / "things.csv"
+        path.write_text(text)
+        whose = r"object 8: .*goes to and fro over the whole extent \(patch 0\)"
+        code, out, _ = run(TOOL, "check", path)
+        self.assertRegex(out, whose)
+        self.assertNotIn("object 3: things: 1 patch", out)
+        self.assertRegex(run(TOOL, "fit", path)[2], "things.csv: group .*" + whose)
+
     def test_strokes_that_were_saved_twice_are_told(self):
         stroke = ellipse()[0]
         text = "x_m,y_m,patch\n" + "".join(f"{x!r},{y!r},{k}\n" for k in (0, 3) for x, y in stroke)
