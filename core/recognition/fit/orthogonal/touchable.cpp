@@ -40,6 +40,18 @@ bool turns(std::size_t against, std::size_t points) {
   return against * kOneIn > points && !(against == 1 && points >= kFewestWithOne);
 }
 
+/// How often each of two ways was seen.
+struct Ways {
+  std::size_t forward = 0;
+  std::size_t told = 0;
+
+  void add(bool is_forward) {
+    ++told;
+    forward += is_forward ? 1 : 0;
+  }
+  bool disagree() const { return turns(std::min(forward, told - forward), told); }
+};
+
 /// Of the polynomial, along a vector.
 double quadratic_part(const ConicCoefficients& q, const Vec2& v) {
   return q[0] * v.x() * v.x() + q[1] * v.x() * v.y() + q[2] * v.y() * v.y();
@@ -169,6 +181,8 @@ class Directions {
 
   void add(const Vec2& travel, const Vec2& gradient) {
     const bool is_left = cross(travel, gradient) >= 0.0;
+    is_turned_ ^= travel.dot(last_travel_) < 0.0 && gradient.dot(last_gradient_) > 0.0;
+    beside_travel_.add(is_left != is_turned_);
     if (may_have_turned_ && is_left != way_is_left_) {
       // The point before was the first of the way back.
       --points_of_way_;
@@ -188,10 +202,12 @@ class Directions {
     last_gradient_ = gradient;
   }
 
-  /// Whether too many go against the others.
+  /// Whether too many go against the others, and too many against the way that the probe itself
+  /// went, which may have trembled to and fro.
   bool disagree() {
     end_way();
-    return turns(std::min(left_, points_ - left_), points_);
+    return turns(std::min(left_, points_ - left_), points_) &&
+           (are_joined_ || beside_travel_.disagree());
   }
 
  private:
@@ -214,6 +230,8 @@ class Directions {
   }
 
   bool are_joined_;
+  Ways beside_travel_;  ///< left, of a travel that is turned back where it turned on its side
+  bool is_turned_ = false;
   std::size_t left_ = 0;
   std::size_t points_ = 0;         ///< with a direction of travel
   std::size_t points_of_way_ = 0;  ///< since it last turned back
@@ -331,25 +349,36 @@ std::optional<std::vector<double>> feet_on_one_strand(const PolynomialFit& fit, 
 }
 
 /// Whether a parameter runs to and fro along a patch, as samples half of it apart show, whose order
-/// noise does not reverse. nullopt if there are none. A tip that rolls about a cusp goes on while
-/// its foot stays.
+/// noise does not reverse. nullopt if there are none. Not where the probe itself does, as one that
+/// trembles at its end: from one chord to the next the parameter then turns where the chord does. A
+/// tip that rolls about a cusp goes on while its foot stays.
 std::optional<bool> runs_to_and_fro(const PolynomialFit& fit, std::span<const double> feet,
-                                    std::span<const FitPoint> points, double farthest) {
+                                    std::span<const FitPoint> points, bool are_joined,
+                                    double farthest) {
   const auto stays = [&](std::size_t from, std::size_t to) {
     return points[from].offset > 0.0 &&
            !is_told_apart(place_at(fit, feet[from]), points[from], place_at(fit, feet[to]),
                           points[to], farthest);
   };
   const std::size_t lag = points.size() / 2;
-  std::size_t forward = 0;
-  std::size_t told = 0;
+  Ways along;
+  Ways beside_chord;
+  bool chord_is_turned = false;
+  Vec2 chord_before = Vec2::Zero();
   for (std::size_t i = 0; i + lag < points.size(); ++i) {
     if (tells_direction(points[i], points[i + lag], farthest) && !stays(i, i + lag)) {
-      ++told;
-      forward += feet[i + lag] >= feet[i] ? 1 : 0;
+      const Vec2 chord = points[i + lag].position - points[i].position;
+      chord_is_turned ^= chord.dot(chord_before) < 0.0;
+      chord_before = chord;
+      const bool is_forward = feet[i + lag] >= feet[i];
+      along.add(is_forward);
+      beside_chord.add(is_forward != chord_is_turned);
     }
   }
-  return told > 0 ? std::optional(turns(std::min(forward, told - forward), told)) : std::nullopt;
+  if (along.told == 0) {
+    return std::nullopt;
+  }
+  return along.disagree() && (are_joined || beside_chord.disagree());
 }
 
 /// Whether between two feet more of the curve is left out than the stroke is long, and more than
@@ -372,10 +401,11 @@ bool is_touchable(const PolynomialFit& fit, const FitData& data) {
   for (const PatchSpan& patch : data.patches) {
     const std::span<const FitPoint> points(data.points.data() + patch.begin, patch.size());
     const std::span<const double> feet(fit.t.data() + patch.begin, patch.size());
-    const std::optional<bool> to_and_fro = runs_to_and_fro(fit, feet, points, farthest);
+    const std::optional<bool> to_and_fro =
+        runs_to_and_fro(fit, feet, points, patch.is_joined, farthest);
     if (!to_and_fro ? goes_to_and_fro(fit, data, patch) : *to_and_fro) {
       const auto on_one = to_and_fro ? feet_on_one_strand(fit, data, patch) : std::nullopt;
-      if (!on_one || *runs_to_and_fro(fit, *on_one, points, farthest)) {
+      if (!on_one || *runs_to_and_fro(fit, *on_one, points, patch.is_joined, farthest)) {
         return false;
       }
     }
