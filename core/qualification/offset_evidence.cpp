@@ -59,6 +59,19 @@ std::vector<double> harmonic_sizes() {
   return sizes;
 }
 
+/// The matrix of so many columns, of which the first `flat` have no prior and the harmonics after
+/// them one of `size` times the noise. `log_sizes`: the sum of their logarithms.
+Eigen::MatrixXd with_prior(const NormalEquations& sums, Eigen::Index flat, Eigen::Index columns,
+                           double size, double* log_sizes) {
+  Eigen::MatrixXd matrix = sums.matrix.topLeftCorner(columns, columns);
+  for (Eigen::Index i = flat; i < columns; ++i) {
+    const double expected = size * overtone(static_cast<int>(i - flat) / 2 + 2);
+    matrix(i, i) += 1.0 / (expected * expected);
+    *log_sizes += std::log(expected);
+  }
+  return matrix;
+}
+
 /// Adds the cells of all orders for one coherence.
 void add_cells(const OffsetModel& model, int highest, double log_ratio, double log_length,
                std::vector<Cell>& cells) {
@@ -71,14 +84,8 @@ void add_cells(const OffsetModel& model, int highest, double log_ratio, double l
   for (int order = 0; order <= highest; order = order == 0 ? 2 : order + 1) {
     const Eigen::Index columns = model.flat.cols() + offset_coefficients(order);
     for (const double size : sizes) {
-      Eigen::MatrixXd matrix = sums.matrix.topLeftCorner(columns, columns);
       double log_sizes = 0.0;
-      for (Eigen::Index i = flat; i < columns; ++i) {
-        const double expected = size * overtone(static_cast<int>(i - flat) / 2 + 2);
-        matrix(i, i) += 1.0 / (expected * expected);
-        log_sizes += std::log(expected);
-      }
-      const Eigen::LDLT<Eigen::MatrixXd> factor(matrix);
+      const Eigen::LDLT<Eigen::MatrixXd> factor(with_prior(sums, flat, columns, size, &log_sizes));
       const Eigen::VectorXd solution = factor.solve(sums.right.head(columns));
       const double squares = std::max(sums.squares - sums.right.head(columns).dot(solution),
                                       degrees * model.least_noise_m * model.least_noise_m);
@@ -129,16 +136,66 @@ Range where_told(const std::vector<Cell>& cells, Range range, int steps, double 
   return {std::max(told.low - step, range.low), std::min(told.high + step, range.high)};
 }
 
+/// The order of a place in OffsetEvidence::probabilities.
+int order_of(std::size_t index) { return index == 0 ? 0 : static_cast<int>(index) + 1; }
+
+/// Covariance of the coefficients of a cell, given the cell.
+Eigen::MatrixXd covariance_of(const OffsetModel& model, const Cell& cell) {
+  const NormalEquations sums =
+      normal_equations(model, {std::exp(cell.log_ratio), std::exp(cell.log_length)});
+  const Eigen::Index flat = model.flat.cols();
+  const Eigen::Index coefficients = offset_coefficients(cell.order);
+  const Eigen::Index columns = flat + coefficients;
+  double log_sizes = 0.0;
+  const Eigen::MatrixXd inverse = with_prior(sums, flat + 1, columns, cell.harmonic, &log_sizes)
+                                      .ldlt()
+                                      .solve(Eigen::MatrixXd::Identity(columns, columns));
+  return cell.variance * inverse.bottomRightCorner(coefficients, coefficients);
+}
+
 /// The lowest order that no higher one beats by substantial evidence (H. Jeffreys).
 int fewest_asked_for(const std::vector<double>& by_order) {
   constexpr double kSubstantial = 3.0;
   for (auto order = by_order.begin(); order != by_order.end(); ++order) {
     if (kSubstantial * *order >= *std::max_element(order, by_order.end())) {
-      const auto index = static_cast<int>(order - by_order.begin());
-      return index == 0 ? 0 : index + 1;
+      return order_of(static_cast<std::size_t>(order - by_order.begin()));
     }
   }
   return 0;
+}
+
+/// OffsetEvidence::other_orders_m2, about the coefficients of the order that was chosen. A harmonic
+/// that an order does not have is 0 for certain. Each order's covariance is that of its most
+/// probable cell.
+Eigen::MatrixXd moments_of_other_orders(const OffsetModel& model, const std::vector<Cell>& cells,
+                                        const OffsetEvidence& chosen,
+                                        const Eigen::VectorXd& about) {
+  Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(about.size(), about.size());
+  for (std::size_t index = 0; index < chosen.probabilities.size(); ++index) {
+    const int order = order_of(index);
+    const Cell* best = nullptr;
+    for (const Cell& cell : cells) {
+      const bool is_better = best == nullptr || cell.log_evidence > best->log_evidence;
+      if (cell.order == order && is_better) best = &cell;
+    }
+    if (order == chosen.order || best == nullptr) continue;
+    const Eigen::Index shared = std::min(about.size(), best->coefficients.size());
+    double total = 0.0;
+    Eigen::MatrixXd off_m2 = Eigen::MatrixXd::Zero(about.size(), about.size());
+    for (const Cell& cell : cells) {
+      if (cell.order != order) continue;
+      const double weight = std::exp(cell.log_evidence - best->log_evidence);
+      Eigen::VectorXd off = -about;
+      off.head(shared) += cell.coefficients.head(shared);
+      off_m2 += weight * off * off.transpose();
+      total += weight;
+    }
+    off_m2 /= total;
+    off_m2.topLeftCorner(shared, shared) +=
+        covariance_of(model, *best).topLeftCorner(shared, shared);
+    moments += chosen.probabilities[index] * off_m2;
+  }
+  return moments;
 }
 
 /// Mean and standard deviation over cells; the weights sum to 1.
@@ -218,9 +275,8 @@ std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
   result.order = fewest_asked_for(by_order);
   result.probabilities = std::move(by_order);
 
-  cells.erase(std::remove_if(cells.begin(), cells.end(),
-                             [&](const Cell& cell) { return cell.order != result.order; }),
-              cells.end());
+  const std::vector<Cell> of_all = cells;
+  std::erase_if(cells, [&](const Cell& cell) { return cell.order != result.order; });
   const Cell& best_cell = *std::max_element(
       cells.begin(), cells.end(),
       [](const Cell& a, const Cell& b) { return a.log_evidence < b.log_evidence; });
@@ -251,7 +307,15 @@ std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
     const Eigen::VectorXd off = cells[i].coefficients - mean;
     result.spread_m2 += weights[i] * off * off.transpose();
   }
+  result.other_orders_m2 = moments_of_other_orders(model, of_all, result, mean);
   return result;
+}
+
+Eigen::MatrixXd over_all_orders(const Eigen::MatrixXd& of_order_m2,
+                                const OffsetEvidence& evidence) {
+  const double of_order =
+      evidence.probabilities[static_cast<std::size_t>(std::max(evidence.order - 1, 0))];
+  return of_order * (of_order_m2 + evidence.spread_m2) + evidence.other_orders_m2;
 }
 
 }  // namespace palpate

@@ -33,9 +33,17 @@ struct OffsetEvidence {
   Estimate deviation_length_m;
   double harmonic_m = 0.0;  ///< prior standard deviation of the harmonics [m]
   Coherence coherence;      ///< the most probable one
-  /// Covariance that the uncertainty of noise and coherence adds to that of the coefficients.
+  /// Covariance that the uncertainty of noise and coherence adds to that of the coefficients, given
+  /// that order.
   Eigen::MatrixXd spread_m2;
+  /// The other orders' part of the coefficients' second moments about those of this order: an arc
+  /// that is touched alone may bend as much by the lobes that it has as by lobes of one more order
+  /// and another constant.
+  Eigen::MatrixXd other_orders_m2;
 };
+
+/// The covariance of the coefficients over all orders, from that given the order.
+Eigen::MatrixXd over_all_orders(const Eigen::MatrixXd& of_order_m2, const OffsetEvidence& evidence);
 
 /// The evidence of each order. Exact except for the grid: given noise, coherence and the size of
 /// the harmonics, all integrals are Gaussian; the integral over the noise leads to Student's law.

@@ -207,7 +207,7 @@ std::optional<WeighedOffset> weighed(const Artefact& artefact, bool same_setup,
     settle_setups(constants.value_m, setups.constant_m, unknowns);
     result.setup_m = setups.elsewhere_m;
   }
-  unknowns.offset.covariance_m2 += result.evidence.spread_m2;
+  unknowns.offset.covariance_m2 = over_all_orders(unknowns.offset.covariance_m2, result.evidence);
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/support/calibration.h"
 #include "tests/support/probe_scene.h"
@@ -120,6 +121,34 @@ TEST(Qualify, SaysWhatWasNotTouched) {
   EXPECT_NE(most.status, QualificationStatus::Sufficient);
   scene.arc_t = 0.5;
   EXPECT_EQ(qualified(scene, rng).status, QualificationStatus::Insufficient);
+}
+
+// Half a ring bends as much by two lobes as by three and another constant: where the samples alone
+// ask for no third, an offset that is certain is wrong.
+TEST(Qualify, HalfARingTellsNoOffsetThatAnotherLobeWouldMove) {
+  auto rng = test::test_rng();
+  ProbeScene scene;
+  scene.probe = plain_probe(5e-6);
+  scene.probe.offset.order = 3;
+  scene.probe.offset.coefficients_m.resize(5);
+  scene.probe.offset.coefficients_m << -3e-5, 4e-5, -2e-5, 0.0, 1.5e-5;
+  scene.arc_t = kPi;
+  scene.samples = 150;
+  scene.world_T_curve = {0.1, -0.05, 0.0};
+  QualificationOptions one_setup;
+  one_setup.same_setup = true;
+  const int rings = test::stress_count(60);
+  for (int ring = 0; ring < rings; ++ring) {
+    const std::vector<ArtefactRecording> recordings = {simulate(scene, rng)};
+    const Qualification result = qualify(scene.curve, recordings, one_setup);
+    const NormalOffset& offset = result.probe.offset;
+    // A normal law has more than six of its deviations once in 500 million times.
+    EXPECT_TRUE(result.status == QualificationStatus::Insufficient ||
+                std::abs(offset.coefficients_m[0] - scene.probe.offset.coefficients_m[0]) <=
+                    6.0 * std::sqrt(offset.covariance_m2(0, 0)))
+        << ring << ": order " << offset.order << ", offset " << offset.coefficients_m[0] << " +- "
+        << std::sqrt(offset.covariance_m2(0, 0));
+  }
 }
 
 TEST(Qualify, AnOffsetOfATenthOfTheTipIsRatherAnotherSize) {
