@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
+#include "core/recognition/samples/dwell_spikes.h"
 #include "core/recognition/samples/dwells.h"
 #include "core/recognition/samples/merged_samples.h"
 #include "core/recognition/samples/sample_block.h"
@@ -47,6 +50,15 @@ double effective_weight(std::span<const StoredSample> samples, const PatchSpan& 
   return std::clamp(stated / of_mean, most, of_all);
 }
 
+/// with_means, of the dwells without their spikes.
+StoredPatch with_means_of_good(StoredPatch patch, std::vector<PatchSpan> dwells,
+                               double default_sigma_m, double false_alarm) {
+  if (false_alarm > 0.0) {
+    set_spikes_apart(default_sigma_m, false_alarm, &patch, &dwells);
+  }
+  return with_means(patch, dwells, default_sigma_m);
+}
+
 }  // namespace
 
 StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwells,
@@ -83,9 +95,9 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
   return result;
 }
 
-StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
-  if (const auto held = held_places(patch.samples); !held.empty()) {
-    return with_means(patch, held, default_sigma_m);
+StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m, double false_alarm) {
+  if (auto held = held_places(patch.samples); !held.empty()) {
+    return with_means_of_good(patch, std::move(held), default_sigma_m, false_alarm);
   }
   // The mean step grows as repeats are removed: if nine in ten are repeats, ten times. So it takes
   // several rounds.
@@ -98,8 +110,14 @@ StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m) {
     }
     result = with_means(result, repeats, default_sigma_m);
   }
-  const std::vector<PatchSpan> dwells = dwells_of(result.samples, default_sigma_m);
-  return dwells.empty() ? result : with_means(result, dwells, default_sigma_m);
+  std::vector<PatchSpan> dwells = dwells_of(result.samples, default_sigma_m);
+  return dwells.empty() ? result
+                        : with_means_of_good(std::move(result), std::move(dwells), default_sigma_m,
+                                             false_alarm);
+}
+
+StoredPatch mean_of_place(const StoredPatch& patch, double default_sigma_m, double false_alarm) {
+  return with_means_of_good(patch, {{0, patch.samples.size()}}, default_sigma_m, false_alarm);
 }
 
 std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m) {

@@ -15,8 +15,12 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
                        double default_sigma_m);
 
 /// Replaces the repeats, then the dwells, by their means. Of a stroke that is held at each of its
-/// places, for at least 8 samples, with long steps between them: each place by its mean.
-StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m);
+/// places, for at least 8 samples, with long steps between them: each place by its mean. Spikes of
+/// dwells stay beside these (dwell_spikes.h); `false_alarm`: 0 = none is sought.
+StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m,
+                           double false_alarm = 0.0);
+/// The same of a patch that is all one place.
+StoredPatch mean_of_place(const StoredPatch& patch, double default_sigma_m, double false_alarm);
 std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
 
 }  // namespace palpate

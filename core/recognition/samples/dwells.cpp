@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "core/numerics/quantile.h"
@@ -39,14 +40,39 @@ constexpr std::size_t kBlock = 8;
 /// Fewer blocks show no order by their means. Six evenly spaced ones have the ratio 6 / 35.
 constexpr std::size_t kFewestBlocks = 6;
 
-/// Mean square distance from their mean that samples with their stated noise have, at most, where
-/// they are of one place. [m^2] nullopt if the noise of any is not stated.
-std::optional<double> most_square_of_noise(std::span<const StoredSample> samples,
-                                           double default_sigma_m) {
-  // In units of the spread of pure noise. Motion over six standard deviations gives as much.
-  constexpr double kSpread = 1.6;
-  const auto stated = stated_variance_m2(samples, default_sigma_m);
-  return stated ? std::optional(2.0 * kSpread * kSpread * *stated) : std::nullopt;
+/// How far apart samples of one place lie at most, in units of the spread of pure noise. Motion
+/// over six standard deviations gives as much.
+constexpr double kSpread = 1.6;
+
+/// Standard deviation of a sample as it is stated; 0 = not known. [m]
+double deviation_m(const StoredSample& sample, double default_sigma_m) {
+  return sigma_m_of(sample, default_sigma_m) / std::sqrt(sample.weight);
+}
+
+/// Whether samples lie about one place as their stated noise lets them, each by its own: a few loud
+/// ones do not let the others lie anywhere. nullopt if the noise of any is not stated.
+std::optional<bool> lie_as_stated(std::span<const StoredSample> samples, double default_sigma_m) {
+  double least_m = std::numeric_limits<double>::infinity();
+  for (const StoredSample& sample : samples) {
+    least_m = std::min(least_m, deviation_m(sample, default_sigma_m));
+  }
+  if (!(least_m > 0.0)) {
+    return std::nullopt;
+  }
+  const Vec2 any = samples.front().position_m;
+  Vec2 sum = Vec2::Zero();
+  double weights = 0.0;
+  for (const StoredSample& sample : samples) {
+    const double share = least_m / deviation_m(sample, default_sigma_m);
+    sum += share * share * (sample.position_m - any);
+    weights += share * share;
+  }
+  const Vec2 mean = any + sum / weights;
+  double squares = 0.0;
+  for (const StoredSample& sample : samples) {
+    squares += ((sample.position_m - mean) / deviation_m(sample, default_sigma_m)).squaredNorm();
+  }
+  return squares <= 2.0 * kSpread * kSpread * static_cast<double>(samples.size());
 }
 
 /// Consecutive blocks of a stroke in which it moves slowly.
@@ -99,9 +125,8 @@ class SlowStretch {
   /// Whether the stated noise, which contains a jitter, is as large. A few means on the way over a
   /// cusp, slow on one arm, show as little order.
   bool may_be_jitter(const SampleBlock& all) const {
-    const auto most =
-        most_square_of_noise(samples_.subspan(all.begin, all.end - all.begin), default_sigma_m_);
-    return !most || all.square <= *most;
+    return lie_as_stated(samples_.subspan(all.begin, all.end - all.begin), default_sigma_m_)
+        .value_or(true);
   }
 
   /// The dwell's exact range: drops samples at the ends that lie farther off than the others, and
@@ -254,20 +279,24 @@ bool is_one_place(std::span<const StoredSample> samples, double default_sigma_m,
   constexpr double kTiny = 1e-3;
   const bool may_show_order = samples.size() >= kFewestInOrder;
   const bool must_show_order = samples.size() >= 2 * kFewestInOrder;
-  const auto most = most_square_of_noise(samples, default_sigma_m);
-  const double of_noise = most.value_or(0.0);
   const double n = static_cast<double>(samples.size());
   const double half_square = half_extent_m * half_extent_m;
   const double small = may_show_order ? kSmall * kSmall * half_square : 0.0;
   const double tiny = must_show_order ? 0.0 : kTiny * kTiny * half_square;
   // Two samples alone, if so far apart, make the mean square as large: a quick test.
-  const Vec2 across = samples[samples.size() / 2].position_m - samples.front().position_m;
-  if (across.squaredNorm() > 2.0 * n * std::max({of_noise, small, tiny})) {
+  const StoredSample& middle = samples[samples.size() / 2];
+  const double across = (middle.position_m - samples.front().position_m).stableNorm();
+  const double of_both = std::hypot(deviation_m(samples.front(), default_sigma_m),
+                                    deviation_m(middle, default_sigma_m));
+  const bool may_be_noise = across <= std::sqrt(2.0 * n) * kSpread * of_both;
+  if (!may_be_noise && across * across > 2.0 * n * std::max(small, tiny)) {
     return false;
   }
+  if (may_be_noise && lie_as_stated(samples, default_sigma_m).value_or(false)) {
+    return true;
+  }
   const SampleBlock all = block_of(samples, 0, samples.size());
-  return (most && all.square <= of_noise) || all.square <= tiny ||
-         (all.square <= small && ratio_of(samples, all) > kNoOrder);
+  return all.square <= tiny || (all.square <= small && ratio_of(samples, all) > kNoOrder);
 }
 
 }  // namespace palpate

@@ -16,9 +16,10 @@ namespace palpate {
 /// A sample in memory: one contact, or the mean of several consecutive ones.
 struct StoredSample {
   Vec2 position_m = Vec2::Zero();
-  double sigma_m = 0.0;   ///< noise of ONE of its contacts; 0 = not known [m]
-  double weight = 1.0;    ///< number of contacts with independent noise that it is worth
-  double contacts = 1.0;  ///< number of contacts that it stands for
+  double sigma_m = 0.0;       ///< noise of ONE of its contacts; 0 = not known [m]
+  double weight = 1.0;        ///< number of contacts with independent noise that it is worth
+  double contacts = 1.0;      ///< number of contacts that it stands for
+  bool is_off_dwell = false;  ///< a spike beside the place where the probe stood still
 
   bool operator==(const StoredSample&) const = default;
 };

@@ -8,7 +8,10 @@
 #include <random>
 #include <vector>
 
+#include "core/recognition/recognizer.h"
+#include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
+#include "tests/support/random_scene.h"
 #include "tests/support/scene_data.h"
 #include "tests/support/scene_prior.h"
 #include "tests/support/test_rng.h"
@@ -118,6 +121,47 @@ TEST(UnequalNoise, AcrossThePathAloneIsNoTurning) {
     // A distance from a curve is across it: noise along the path changes little.
     EXPECT_GE(4 * across.right, 3 * any.right);
   }
+}
+
+/// One sample in ten says, truly, that it is 300 times as loud as the others: the mean of the
+/// variances that a stroke states is as large as the stroke, which is not all one place for that.
+TEST(UnequalNoise, OfAFewLoudSamplesLeavesTheOthersWhereTheyAre) {
+  constexpr double kSigma = 1e-5;  // [m]
+  std::mt19937_64 rng = test::test_rng();
+  test::SceneOptions options;
+  options.patches = 4;
+  options.points_per_patch = 60;
+  options.sigma_over_size = 1e-9;
+  options.size_m = 0.025;
+  const int scenes = test::stress_count(15);
+  int all = 0;
+  int first = 0;
+  for (const CurveClass curve_class : kCurveClasses) {
+    for (int i = 0; i < scenes; ++i) {
+      const test::Scene exact = test::random_scene(curve_class, options, rng);
+      Recognizer recognizer;
+      PatchContext context;
+      for (const std::vector<Vec2>& way : exact.patches) {
+        std::vector<ContactSample> samples;
+        for (const Vec2& place : way) {
+          const double sigma_m = kSigma * (test::uniform(rng, 0.0, 1.0) < 0.1 ? 300.0 : 1.0);
+          samples.push_back({place + test::normal_pair(rng, sigma_m), sigma_m, 0});
+        }
+        recognizer.add(context, samples);
+        ++context.patch;
+      }
+      const Recognition answer = recognizer.recognize();
+      const Hypothesis* truth = test::hypothesis_of(answer, curve_class);
+      ++all;
+      first += truth != nullptr && truth == answer.hypotheses.data() ? 1 : 0;
+    }
+  }
+  std::cout << "  with loud samples: of " << all << " most probably what they are " << first
+            << "\n";
+  // What is asked of scenes whose class the data determine (bench_posterior), less four deviations
+  // of so many scenes.
+  const double missed = 0.08 * all;
+  EXPECT_GE(first, all - missed - 4.0 * std::sqrt(missed));
 }
 
 }  // namespace

@@ -15,11 +15,10 @@
 namespace palpate {
 namespace {
 
-/// The patch without repeats and dwells.
-StoredPatch moving(const StoredPatch& patch, bool is_one_place, double default_sigma_m) {
-  const PatchSpan all{0, patch.samples.size()};
-  return is_one_place ? with_means(patch, std::span(&all, 1), default_sigma_m)
-                      : without_dwells(patch, default_sigma_m);
+/// The patch without repeats and dwells, the spikes of these marked.
+StoredPatch moving(const StoredPatch& patch, bool is_one_place, const CleanOptions& options) {
+  return is_one_place ? mean_of_place(patch, options.default_sigma_m, options.false_alarm)
+                      : without_dwells(patch, options.default_sigma_m, options.false_alarm);
 }
 
 /// Converts turns that were found without spikes to indices among all samples. A turn is the
@@ -114,13 +113,17 @@ Reversals turns_without(std::vector<bool> is_spike, std::span<const std::size_t>
                    reversals_of(without_spikes(samples, is_spike), default_sigma_m));
 }
 
-/// Cuts a patch into passes, with and without spikes. Among many spikes some follow each other in
+/// Where a patch is cut into passes, by index of the first sample after each, and its spikes.
+struct Cut {
+  std::vector<std::size_t> returns;
+  std::vector<bool> is_spike;
+};
+
+/// Where a patch is cut, and its spikes. Among many spikes some follow each other in
 /// runs that turn back: the parts between their turns are too short to show them, and no block
 /// judges the sample at a cusp. So where other turns are left without these and what is found, the
 /// patch is searched as a whole, to find those that made or hid a turn.
-void clean_passes(const StoredPatch& patch, const CleanOptions& options,
-                  std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
-                  WorkBudget& work) {
+Cut cut_of(const StoredPatch& patch, const CleanOptions& options, WorkBudget& work) {
   const double default_sigma_m = options.default_sigma_m;
   const std::vector<RelativeNoise> noise =
       relative_noise(patch, default_sigma_m, options.form_deviation_m);
@@ -141,7 +144,24 @@ void clean_passes(const StoredPatch& patch, const CleanOptions& options,
       is_spike = spikes(turns);
     }
   }
-  *passes = passes_of(patch, turns.returns);
+  return {std::move(turns.returns), std::move(is_spike)};
+}
+
+/// Cuts a patch into passes, with and without spikes: those found here, and those of dwells, which
+/// have no part in what is found.
+void clean_passes(const StoredPatch& patch, const CleanOptions& options,
+                  std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
+                  WorkBudget& work) {
+  std::vector<bool> is_spike;
+  for (const StoredSample& sample : patch.samples) is_spike.push_back(sample.is_off_dwell);
+  Cut cut = cut_of(has_any(is_spike) ? without_spikes(patch, is_spike) : patch, options, work);
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < is_spike.size(); ++i) {
+    if (!is_spike[i]) kept.push_back(i);
+  }
+  for (std::size_t k = 0; k < kept.size(); ++k) is_spike[kept[k]] = cut.is_spike[k];
+  for (std::size_t& end : cut.returns) end = kept[end - 1] + 1;
+  *passes = passes_of(patch, cut.returns);
   *clean = each_without_spikes(*passes, is_spike);
 }
 
@@ -166,8 +186,7 @@ void CleanPatches::update(std::span<const StoredPatch> patches, const CleanOptio
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
-      clean_passes(moving(patch, now.is_one_place, default_sigma_m), options, &now.moved,
-                   &now.clean, work);
+      clean_passes(moving(patch, now.is_one_place, options), options, &now.moved, &now.clean, work);
       seen = std::move(now);
       if (work.was_cut()) {
         seen.version = PatchVersion{};  // none that has a sample
