@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 #include "core/numerics/quantile.h"
@@ -13,14 +14,10 @@ namespace {
 /// Fewer readings do not tell what scatter is theirs.
 constexpr std::size_t kFewest = 8;
 
-/// The noise of a sample beside that of the others: as stated, or the same for all where any states
-/// none.
-double noise_beside_others(const StoredSample& sample, double default_sigma_m, bool is_stated) {
-  return is_stated ? sigma_m_of(sample, default_sigma_m) / std::sqrt(sample.weight) : 1.0;
-}
-
-/// How far the readings of a place lie from their median place, by their noise.
-std::vector<double> distances_of(std::span<const StoredSample> readings, double default_sigma_m) {
+/// How far the readings of a place lie from their median place: in deviations of their noise, if
+/// that `is_stated`.
+std::vector<double> distances_of(std::span<const StoredSample> readings, double default_sigma_m,
+                                 bool is_stated) {
   std::vector<double> x;
   std::vector<double> y;
   for (const StoredSample& reading : readings) {
@@ -28,17 +25,18 @@ std::vector<double> distances_of(std::span<const StoredSample> readings, double 
     y.push_back(reading.position_m.y());
   }
   const Vec2 place(median_of(x), median_of(y));
-  const bool is_stated = stated_variance_m2(readings, default_sigma_m).has_value();
   std::vector<double> distances;
+  distances.reserve(readings.size());
   for (const StoredSample& reading : readings) {
-    distances.push_back((reading.position_m - place).norm() /
-                        noise_beside_others(reading, default_sigma_m, is_stated));
+    const double unit =
+        is_stated ? sigma_m_of(reading, default_sigma_m) / std::sqrt(reading.weight) : 1.0;
+    distances.push_back((reading.position_m - place).norm() / unit);
   }
   return distances;
 }
 
-/// Which readings lie farther from their median place than noise of the scatter that most of them
-/// have, which a jitter along the part may be more of than is stated.
+/// Which readings lie farther from their median place than the scatter that most of them have lets
+/// them, which a jitter along the part may be more of than is stated, or the stated noise.
 std::vector<bool> spikes_among(std::span<const StoredSample> readings, double default_sigma_m,
                                double false_alarm) {
   // A distance in the plane exceeds r deviations with the probability exp(-r^2 / 2): the median is
@@ -47,12 +45,17 @@ std::vector<bool> spikes_among(std::span<const StoredSample> readings, double de
   constexpr double kKnownTo = 0.72;
   constexpr double kDeviations = 3.0;
   const auto n = static_cast<double>(readings.size());
-  const std::vector<double> distances = distances_of(readings, default_sigma_m);
+  const bool is_stated = stated_variance_m2(readings, default_sigma_m).has_value();
+  const std::vector<double> distances = distances_of(readings, default_sigma_m, is_stated);
   std::vector<double> sorted = distances;
   const double deviation =
-      median_of(sorted) / kMedian * (1.0 + kDeviations * kKnownTo / std::sqrt(n));
-  const double farthest = deviation * std::sqrt(2.0 * std::log(n / false_alarm));
+      std::max(median_of(sorted) / kMedian * (1.0 + kDeviations * kKnownTo / std::sqrt(n)),
+               is_stated ? 1.0 : 0.0);
+  // Most readings of a coarse scale may be one number: then they show no scatter.
+  const double farthest = deviation > 0.0 ? deviation * std::sqrt(2.0 * std::log(n / false_alarm))
+                                          : std::numeric_limits<double>::infinity();
   std::vector<bool> is_spike;
+  is_spike.reserve(distances.size());
   for (const double distance : distances) is_spike.push_back(distance > farthest);
   return is_spike;
 }

@@ -3,10 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <random>
 #include <vector>
+
+#include "core/recognition/samples/dwell_spikes.h"
 
 namespace palpate {
 namespace {
@@ -291,6 +295,66 @@ TEST_F(Dwells, AHoldAfterAFewPlacesIsOnePlace) {
                 kNoise);
     }
   }
+}
+
+/// Readings 5 to 24 of 30 are of one place; those of these in `spikes` are not.
+StoredPatch held_in_the_middle(const std::vector<std::size_t>& spikes) {
+  StoredPatch patch;
+  std::mt19937_64 rng(11);
+  std::normal_distribution<double> normal(0.0, kNoise);
+  for (std::size_t i = 0; i < 30; ++i) {
+    const double x = i < 5 ? -1e-3 * static_cast<double>(5 - i)
+                           : 1e-3 * static_cast<double>(std::max<std::size_t>(i, 24) - 24);
+    const double y = normal(rng);
+    patch.samples.push_back({Vec2(x + normal(rng), y), kNoise});
+    patch.details.emplace_back().normal_sigma_rad = static_cast<double>(i);
+  }
+  for (const std::size_t i : spikes) patch.samples[i].position_m.y() += 30.0 * kNoise;
+  return patch;
+}
+
+TEST_F(Dwells, LeaveTheirSpikesBesideThem) {
+  for (const double stated : {kNoise, 0.0}) {
+    StoredPatch patch = held_in_the_middle({7, 8, 20});
+    for (StoredSample& sample : patch.samples) sample.sigma_m = stated;
+    const StoredPatch before = patch;
+    std::vector<PatchSpan> dwells = {{5, 25}};
+    set_spikes_apart(0.0, 0.01, &patch, &dwells);
+    EXPECT_EQ(dwells.front().begin, 5U);
+    ASSERT_EQ(dwells.front().end, 22U);
+    std::vector<bool> seen(30, false);
+    for (std::size_t i = 0; i < patch.samples.size(); ++i) {
+      const auto of = static_cast<std::size_t>(patch.details[i].normal_sigma_rad);
+      seen[of] = true;
+      EXPECT_EQ(patch.samples[i].position_m, before.samples[of].position_m);
+      EXPECT_EQ(patch.samples[i].is_off_dwell, of == 7 || of == 8 || of == 20);
+    }
+    EXPECT_EQ(std::count(seen.begin(), seen.end(), true), 30);
+  }
+}
+
+TEST_F(Dwells, ThatEndAStrokeHaveTheirSpikesBefore) {
+  StoredPatch patch = held_in_the_middle({8});
+  patch.samples.resize(25);
+  patch.details.resize(25);
+  std::vector<PatchSpan> dwells = {{5, 25}};
+  set_spikes_apart(0.0, 0.01, &patch, &dwells);
+  EXPECT_EQ(dwells.front().begin, 6U);
+  EXPECT_TRUE(patch.samples[5].is_off_dwell);
+}
+
+TEST_F(Dwells, HaveNoSpikesWhereMostReadingsAreOneNumber) {
+  StoredPatch patch = held_in_the_middle({});
+  for (std::size_t i = 5; i < 25; ++i) {
+    patch.samples[i] = {Vec2(i % 3 == 0 ? kNoise : 0.0, 0.0)};
+  }
+  std::vector<PatchSpan> dwells = {{5, 25}};
+  set_spikes_apart(0.0, 0.01, &patch, &dwells);
+  EXPECT_EQ(dwells.front().end, 25U);
+  // What is stated is no spike, though the readings scatter by less.
+  for (StoredSample& sample : patch.samples) sample.sigma_m = kNoise;
+  set_spikes_apart(0.0, 0.01, &patch, &dwells);
+  EXPECT_EQ(dwells.front().end, 25U);
 }
 
 }  // namespace
