@@ -19,8 +19,9 @@ StoredPatch with_means(const StoredPatch& patch, std::span<const PatchSpan> dwel
 /// dwells stay beside these (dwell_spikes.h); `false_alarm`: 0 = none is sought.
 StoredPatch without_dwells(const StoredPatch& patch, double default_sigma_m,
                            double false_alarm = 0.0);
-/// The same of a patch that is all one place.
-StoredPatch mean_of_place(const StoredPatch& patch, double default_sigma_m, double false_alarm);
 std::vector<Vec2> without_dwells(std::span<const Vec2> positions_m);
+
+/// Replaces the samples of a patch that is all one place by their mean, as without_dwells().
+StoredPatch mean_of_place(const StoredPatch& patch, double default_sigma_m, double false_alarm);
 
 }  // namespace palpate

@@ -119,9 +119,9 @@ struct Cut {
   std::vector<bool> is_spike;
 };
 
-/// Where a patch is cut, and its spikes. Among many spikes some follow each other in
-/// runs that turn back: the parts between their turns are too short to show them, and no block
-/// judges the sample at a cusp. So where other turns are left without these and what is found, the
+/// Where a patch is cut, and its spikes. Among many spikes some follow each other in runs that turn
+/// back: the parts between their turns are too short to show them, and no block judges the sample
+/// at a cusp. So where other turns are left without these and what is found, the
 /// patch is searched as a whole, to find those that made or hid a turn.
 Cut cut_of(const StoredPatch& patch, const CleanOptions& options, WorkBudget& work) {
   const double default_sigma_m = options.default_sigma_m;
@@ -147,22 +147,23 @@ Cut cut_of(const StoredPatch& patch, const CleanOptions& options, WorkBudget& wo
   return {std::move(turns.returns), std::move(is_spike)};
 }
 
-/// Cuts a patch into passes, with and without spikes: those found here, and those of dwells, which
-/// have no part in what is found.
-void clean_passes(const StoredPatch& patch, const CleanOptions& options,
-                  std::vector<StoredPatch>* passes, std::vector<StoredPatch>* clean,
-                  WorkBudget& work) {
+/// The same, where spikes of dwells have no part in what is found, and are spikes.
+Cut cut_beside_dwells(const StoredPatch& patch, const CleanOptions& options, WorkBudget& work) {
   std::vector<bool> is_spike;
+  is_spike.reserve(patch.samples.size());
   for (const StoredSample& sample : patch.samples) is_spike.push_back(sample.is_off_dwell);
-  Cut cut = cut_of(has_any(is_spike) ? without_spikes(patch, is_spike) : patch, options, work);
+  if (!has_any(is_spike)) {
+    return cut_of(patch, options, work);
+  }
+  Cut cut = cut_of(without_spikes(patch, is_spike), options, work);
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < is_spike.size(); ++i) {
     if (!is_spike[i]) kept.push_back(i);
   }
   for (std::size_t k = 0; k < kept.size(); ++k) is_spike[kept[k]] = cut.is_spike[k];
   for (std::size_t& end : cut.returns) end = kept[end - 1] + 1;
-  *passes = passes_of(patch, cut.returns);
-  *clean = each_without_spikes(*passes, is_spike);
+  cut.is_spike = std::move(is_spike);
+  return cut;
 }
 
 }  // namespace
@@ -186,7 +187,10 @@ void CleanPatches::update(std::span<const StoredPatch> patches, const CleanOptio
     Seen now{version_of(patch), is_one_place(patch.samples, default_sigma_m, extent_m)};
     Seen& seen = seen_[p];
     if (!(seen.version == now.version) || seen.is_one_place != now.is_one_place) {
-      clean_passes(moving(patch, now.is_one_place, options), options, &now.moved, &now.clean, work);
+      const StoredPatch moved = moving(patch, now.is_one_place, options);
+      const Cut cut = cut_beside_dwells(moved, options, work);
+      now.moved = passes_of(moved, cut.returns);
+      now.clean = each_without_spikes(now.moved, cut.is_spike);
       seen = std::move(now);
       if (work.was_cut()) {
         seen.version = PatchVersion{};  // none that has a sample
