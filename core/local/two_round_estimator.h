@@ -26,9 +26,10 @@ int two_round_samples(const TwoRoundOptions& options);
 /// are by Simpson's rule between the medians. O(n m); does not allocate.
 ///
 /// The covariance accounts for the noise of all samples to first order, with the overlap of the
-/// windows. The noise of the arc lengths is omitted (relative error sigma / window). Bias of kappa:
-/// W^2 / 56 times the fourth derivative of the graph, W the arc length of one window (u^4 contains
-/// 4/7 of P_2). Bias of kappa_s: the slope of that bias.
+/// windows. The noise of the arc lengths is omitted (relative error sigma / window). Bias of the
+/// tangent angle: kappa_s W^2 / 40, W the arc length of one window (u^3 contains 3/5 of P_1). Bias
+/// of kappa: W^2 / 56 times the fourth derivative of the graph (u^4 contains 4/7 of P_2). Bias of
+/// kappa_s: the slope of that bias.
 LocalResult two_round_estimate(std::span<const Vec2> samples, const TwoRoundOptions& options = {});
 
 }  // namespace palpate

@@ -11,9 +11,6 @@
 namespace palpate {
 namespace {
 
-/// Fewer readings do not tell what scatter is theirs.
-constexpr std::size_t kFewest = 8;
-
 /// How far the readings of a place lie from their median place: in deviations of their noise, if
 /// that `is_stated`.
 std::vector<double> distances_of(std::span<const StoredSample> readings, double default_sigma_m,
@@ -64,8 +61,9 @@ std::vector<bool> spikes_among(std::span<const StoredSample> readings, double de
 
 void set_spikes_apart(double default_sigma_m, double false_alarm, StoredPatch* patch,
                       std::vector<PatchSpan>* dwells) {
+  constexpr std::size_t kFewestReadings = 8;  // fewer do not tell what scatter is theirs
   for (PatchSpan& dwell : *dwells) {
-    if (dwell.size() < kFewest) continue;
+    if (dwell.size() < kFewestReadings) continue;
     const std::span<StoredSample> readings =
         std::span(patch->samples).subspan(dwell.begin, dwell.size());
     const std::vector<bool> is_spike = spikes_among(readings, default_sigma_m, false_alarm);
