@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/numerics/probability/log_gamma.h"
@@ -164,9 +165,9 @@ int fewest_asked_for(const std::vector<double>& by_order) {
   return 0;
 }
 
-/// OffsetEvidence::other_orders_m2, about the coefficients of the order that was chosen. A harmonic
-/// that an order does not have is 0 for certain. Each order's covariance is that of its most
-/// probable cell.
+/// OffsetEvidence::other_orders_m2, from their cells, about the coefficients of the chosen order. A
+/// harmonic that an order does not have is 0 for certain. Each order's covariance is that of its
+/// most probable cell.
 Eigen::MatrixXd moments_of_other_orders(const OffsetModel& model, const std::vector<Cell>& cells,
                                         const OffsetEvidence& chosen,
                                         const Eigen::VectorXd& about) {
@@ -178,7 +179,7 @@ Eigen::MatrixXd moments_of_other_orders(const OffsetModel& model, const std::vec
       const bool is_better = best == nullptr || cell.log_evidence > best->log_evidence;
       if (cell.order == order && is_better) best = &cell;
     }
-    if (order == chosen.order || best == nullptr) continue;
+    if (best == nullptr) continue;
     const Eigen::Index shared = std::min(about.size(), best->coefficients.size());
     double total = 0.0;
     Eigen::MatrixXd off_m2 = Eigen::MatrixXd::Zero(about.size(), about.size());
@@ -275,8 +276,11 @@ std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
   result.order = fewest_asked_for(by_order);
   result.probabilities = std::move(by_order);
 
-  const std::vector<Cell> of_all = cells;
-  std::erase_if(cells, [&](const Cell& cell) { return cell.order != result.order; });
+  const auto rest = std::stable_partition(
+      cells.begin(), cells.end(), [&](const Cell& cell) { return cell.order == result.order; });
+  const std::vector<Cell> others(std::make_move_iterator(rest),
+                                 std::make_move_iterator(cells.end()));
+  cells.erase(rest, cells.end());
   const Cell& best_cell = *std::max_element(
       cells.begin(), cells.end(),
       [](const Cell& a, const Cell& b) { return a.log_evidence < b.log_evidence; });
@@ -307,7 +311,7 @@ std::optional<OffsetEvidence> weigh_offsets(const OffsetModel& model) {
     const Eigen::VectorXd off = cells[i].coefficients - mean;
     result.spread_m2 += weights[i] * off * off.transpose();
   }
-  result.other_orders_m2 = moments_of_other_orders(model, of_all, result, mean);
+  result.other_orders_m2 = moments_of_other_orders(model, others, result, mean);
   return result;
 }
 

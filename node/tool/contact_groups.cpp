@@ -40,7 +40,8 @@ std::vector<ContactGroup> contact_groups(const std::string& file, const ContactT
   return groups;
 }
 
-std::string object_of(const ContactGroup& group) {
+std::string object_of(const ContactGroup& group, bool is_alone) {
+  if (is_alone) return {};
   return "group " + printable_path(group.name) + ", object " + std::to_string(group.object) + ": ";
 }
 

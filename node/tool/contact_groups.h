@@ -13,8 +13,8 @@ namespace palpate {
 /// Groups in the order of their first sample in the file.
 std::vector<ContactGroup> contact_groups(const std::string& file, const ContactTable& table);
 
-/// "group g, object 1: ", before what is said of one of several.
-std::string object_of(const ContactGroup& group);
+/// "group g, object 1: ", before what is said of one of several; empty if it `is_alone`.
+std::string object_of(const ContactGroup& group, bool is_alone = false);
 
 /// If the samples have normals or covariances: a note that normals are not used and that only the
 /// mean noise of covariances is; else empty.

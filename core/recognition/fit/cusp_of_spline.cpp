@@ -1,6 +1,5 @@
 #include "core/recognition/fit/cusp_of_spline.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -30,12 +29,6 @@ std::optional<ClassFit> polished_from(CurveClass curve_class, PolynomialFit star
     found->polished = true;
   }
   return found;
-}
-
-double largest_offset(const FitData& data) {
-  return std::max_element(data.points.begin(), data.points.end(),
-                          [](const FitPoint& a, const FitPoint& b) { return a.offset < b.offset; })
-      ->offset;
 }
 
 /// The spline that goes round the cusp of a semi-cubical parabola in a bend of that radius.
@@ -75,8 +68,9 @@ std::optional<ClassFit> cusp_of_spline(const ClassFit& spline, const FitData& da
 std::optional<ClassFit> spline_from_limit(const ClassFit& limit, const FitData& data,
                                           WorkBudget& work) {
   PolynomialFit start = *limit.polynomial;
-  if (limit.curve_class == CurveClass::SemiCubicalParabola && has_tips(data.points)) {
-    start = rounded_at_cusp(std::move(start), kStartRadius * largest_offset(data), data, work);
+  const double tip = largest_offset(data.points);
+  if (limit.curve_class == CurveClass::SemiCubicalParabola && tip > 0.0) {
+    start = rounded_at_cusp(std::move(start), kStartRadius * tip, data, work);
   }
   normalise_parameter(PolynomialModel::CubicSpline, &start);
   return polished_from(CurveClass::CubicSpline, std::move(start), data, work);

@@ -1,11 +1,24 @@
 // A cubic spline and what it is at its limits: each may start from the others.
 #pragma once
 
+#include <algorithm>
+#include <array>
+
+#include "core/curves/curve_class.h"
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/polynomial_fits.h"
 #include "core/recognition/samples/fit_data.h"
 
 namespace palpate {
+
+/// The classes that a spline is one of at its limits.
+inline constexpr std::array kLimitsOfSpline = {
+    CurveClass::CubicalParabola, CurveClass::SemiCubicalParabola, CurveClass::Parabola};
+
+inline bool is_limit_of_spline(CurveClass curve_class) {
+  return std::find(kLimitsOfSpline.begin(), kLimitsOfSpline.end(), curve_class) !=
+         kLimitsOfSpline.end();
+}
 
 /// A class can be no worse than its limits: the spline starts from them too where it is. Limits
 /// above `highest_chi2` do not matter. `out_of_reach`: as fit_classes.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/numerics/quantile.h"
+#include "core/recognition/samples/sample_block.h"
 
 namespace palpate {
 namespace {
@@ -15,13 +16,7 @@ namespace {
 /// that `is_stated`.
 std::vector<double> distances_of(std::span<const StoredSample> readings, double default_sigma_m,
                                  bool is_stated) {
-  std::vector<double> x;
-  std::vector<double> y;
-  for (const StoredSample& reading : readings) {
-    x.push_back(reading.position_m.x());
-    y.push_back(reading.position_m.y());
-  }
-  const Vec2 place(median_of(x), median_of(y));
+  const Vec2 place = median_place(readings);
   std::vector<double> distances;
   distances.reserve(readings.size());
   for (const StoredSample& reading : readings) {

@@ -224,6 +224,14 @@ bool has_tips(std::span<const FitPoint> points) {
                      [](const FitPoint& point) { return point.offset > 0.0; });
 }
 
+double largest_offset(std::span<const FitPoint> points) {
+  double largest = 0.0;
+  for (const FitPoint& point : points) {
+    largest = std::max(largest, point.offset);
+  }
+  return largest;
+}
+
 double rounding_level(const FitData& data) {
   // A coordinate has an error of half a unit in the last place; a few of them add up in a residual.
   constexpr double kRoundings = 4.0;

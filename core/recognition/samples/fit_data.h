@@ -124,6 +124,9 @@ double most_chi2_of_noise(std::span<const FitPoint> points);
 /// True if any point is the centre of a tip.
 bool has_tips(std::span<const FitPoint> points);
 
+/// The largest offset; 0 without tips.
+double largest_offset(std::span<const FitPoint> points);
+
 /// Rounding error of the coordinates, normalised: no noise is smaller.
 double rounding_level(const FitData& data);
 

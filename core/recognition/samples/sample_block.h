@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 #include "core/curves/pose2.h"
+#include "core/numerics/quantile.h"
 #include "core/recognition/samples/step_ratio.h"
 #include "core/recognition/samples/stored_patch.h"
 
@@ -19,6 +22,17 @@ struct SampleBlock {
 
 inline Vec2 place_of(const StoredSample& sample) { return sample.position_m; }
 inline Vec2 place_of(const SampleBlock& block) { return block.mean; }
+
+/// The median of each coordinate, of some samples.
+inline Vec2 median_place(std::span<const StoredSample> samples) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const StoredSample& sample : samples) {
+    x.push_back(sample.position_m.x());
+    y.push_back(sample.position_m.y());
+  }
+  return {median_of(x), median_of(y)};
+}
 
 /// Mean, and mean square distance from it. Two passes: far from the origin, squares of coordinates
 /// have no digits left for the scatter.

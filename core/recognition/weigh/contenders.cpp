@@ -10,6 +10,7 @@
 #include "core/recognition/fit/canonical_fit.h"
 #include "core/recognition/fit/cusp_of_spline.h"
 #include "core/recognition/fit/on_all_points.h"
+#include "core/recognition/fit/spline_limits.h"
 #include "core/recognition/posterior/class_limits.h"
 #include "core/recognition/posterior/laplace_evidences.h"
 
@@ -168,8 +169,7 @@ void seek_spline_from_limits(const EvidenceContext& context, Contenders* contend
   }
   const double most = coarse->chi2 + context.arcs.smooth.chi2 + kTenfold;
   bool found_any = false;
-  for (const CurveClass i :
-       {CurveClass::CubicalParabola, CurveClass::SemiCubicalParabola, CurveClass::Parabola}) {
+  for (const CurveClass i : kLimitsOfSpline) {
     const auto& limit = contenders->fits[i];
     if (!limit || !limit->on_all || spline->chi2 <= limit->chi2 + kWorseThanLimit ||
         !context.work.allows()) {

@@ -75,12 +75,6 @@ void start_at(const ClassFit& fit, WarmStart* start) {
   }
 }
 
-/// Whether a spline is one of that class at one of its limits.
-bool is_limit_of_spline(CurveClass curve_class) {
-  return curve_class == CurveClass::Parabola || curve_class == CurveClass::CubicalParabola ||
-         curve_class == CurveClass::SemiCubicalParabola;
-}
-
 /// The class that has all points as noise lets it, whatever the reduced points with their
 /// directions say of it: where a tip rolls about a cusp, these are what keeps them from it. nullopt
 /// if none.
@@ -250,14 +244,6 @@ std::optional<FitData> turned_along(const CanonicalFit& curve, Feet feet, const 
   return turn < kSettledTurn ? std::nullopt : std::optional(std::move(turned));
 }
 
-double largest_tip_m(const FitData& touches) {
-  double largest = 0.0;
-  for (const FitPoint& point : touches.points) {
-    largest = std::max(largest, point.offset);
-  }
-  return largest * touches.scale;
-}
-
 /// The spline, or the cusp, with a bend at t = 0 that is no sharper than a circle of that radius,
 /// as centres go about a corner; nullopt of other curves, and where the bend is none.
 std::optional<CanonicalFit> rounded(const CanonicalFit& curve, double radius_m) {
@@ -329,7 +315,8 @@ SideChoice fit_way_again(SideChoice choice, const FitData& touches, const SideCo
     take_along(*centres->get(), centres->start());
   }
   if (has_kept_tips(smooth) && may_gain() && centres->get()) {
-    if (const auto curve = rounded(*centres->get(), largest_tip_m(touches))) {
+    if (const auto curve =
+            rounded(*centres->get(), largest_offset(touches.points) * touches.scale)) {
       take_along(*curve, nullptr);
     }
   }

@@ -23,33 +23,30 @@ constexpr double kSigma = 2e-5;  // [m]
 
 /// Readings of one place, of which some are spikes, all to one side of the travel.
 void add_rest(const Vec2& place, const Vec2& travel, int readings, double spikes,
-              std::vector<ContactSample>* samples, std::mt19937_64& rng) {
+              std::vector<Vec2>* samples, std::mt19937_64& rng) {
   const Vec2 aside = left_of(travel.normalized());
   for (int i = 0; i < readings; ++i) {
     Vec2 at = place + test::normal_pair(rng, kSigma);
     if (test::uniform(rng, 0.0, 1.0) < spikes) {
       at += kSigma * test::uniform(rng, 6.0, 40.0) * aside;
     }
-    samples->push_back({at, kSigma, 0});
+    samples->push_back(at);
   }
 }
 
 Recognition stroked(const test::Scene& exact, double spikes, std::mt19937_64& rng) {
   constexpr int kReadings = 30;
   constexpr std::size_t kEvery = 10;
-  Recognizer recognizer;
-  PatchContext context;
+  test::Scene scene;
   for (const std::vector<Vec2>& way : exact.patches) {
-    std::vector<ContactSample> samples;
+    std::vector<Vec2>& samples = scene.patches.emplace_back();
     add_rest(way.front(), way[1] - way[0], kReadings, spikes, &samples, rng);
     for (std::size_t i = 0; i < way.size(); i += kEvery) {
-      samples.push_back({way[i] + test::normal_pair(rng, kSigma), kSigma, 0});
+      samples.push_back(way[i] + test::normal_pair(rng, kSigma));
     }
     add_rest(way.back(), way.back() - way[way.size() - 2], kReadings, spikes, &samples, rng);
-    recognizer.add(context, samples);
-    ++context.patch;
   }
-  return recognizer.recognize();
+  return test::recognise(scene, kSigma);
 }
 
 TEST(SpikesInDwells, AreNotOfThePlace) {

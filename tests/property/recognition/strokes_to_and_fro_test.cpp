@@ -76,18 +76,15 @@ Recognition stroked(CurveClass curve_class, const Habit& habit, std::mt19937_64&
   const test::Scene scene = test::random_scene(curve_class, options, rng);
   RecognizerOptions with;
   with.patience = kPatienceWithFiles;
-  Recognizer recognizer(with);
-  PatchContext context;
+  test::Scene touched;
   for (const std::vector<Vec2>& piece : scene.patches) {
-    std::vector<ContactSample> samples;
+    std::vector<Vec2>& samples = touched.patches.emplace_back();
     for (const double place : habit(rng)) {
       const auto at = static_cast<std::size_t>(place * static_cast<double>(piece.size() - 1));
-      samples.push_back({piece[at] + test::normal_pair(rng, kSigma), kSigma, 0});
+      samples.push_back(piece[at] + test::normal_pair(rng, kSigma));
     }
-    recognizer.add(context, samples);
-    ++context.patch;
   }
-  return recognizer.recognize();
+  return test::recognise(touched, kSigma, with);
 }
 
 /// How many parts are most probably what they are, and that none is RECOGNIZED as of no class.

@@ -15,7 +15,7 @@ constexpr std::size_t kFewestWithOne = 4;
 }  // namespace
 
 bool turns(std::size_t against, std::size_t points) {
-  return against * kOneIn > points && !(against == 1 && points >= kFewestWithOne);
+  return against * kMayTurnOneIn > points && !(against == 1 && points >= kFewestWithOne);
 }
 
 double farthest_noise(double chi2, const FitData& data) {

@@ -10,7 +10,7 @@ namespace palpate {
 
 /// Of a patch's points, as many as a bend, or a spike along the arc with its neighbours, may turn
 /// round. What lets neighbours lie on opposite sides of a curve turns half of them.
-inline constexpr std::size_t kOneIn = 10;
+inline constexpr std::size_t kMayTurnOneIn = 10;
 
 /// True if so many of a patch's points that show a direction go against the others.
 bool turns(std::size_t against, std::size_t points);

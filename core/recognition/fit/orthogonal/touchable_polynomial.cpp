@@ -39,7 +39,7 @@ constexpr double kHalfTurn = 1.5307337294603591;
 /// turn's way, time and again. About a bend a few may, which would be many of a few samples.
 /// Nothing is said of tips' centres.
 bool goes_to_and_fro(const PolynomialFit& fit, const FitData& data, const PatchSpan& patch) {
-  if (patch.size() < 2 * kOneIn || data.points[patch.begin].offset > 0.0) {
+  if (patch.size() < 2 * kMayTurnOneIn || data.points[patch.begin].offset > 0.0) {
     return false;
   }
   std::size_t astray = 0;

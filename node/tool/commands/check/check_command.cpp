@@ -79,7 +79,7 @@ int check_file(const CheckCommand& command) {
                         ""});
     const bool is_alone = groups.size() == 1;
     const auto say = [&](Finding finding) {
-      finding.object = is_alone ? "" : object_of(group);
+      finding.object = object_of(group, is_alone);
       findings.push_back(std::move(finding));
     };
     if (auto few = too_few_places(group, patches.size())) say(*std::move(few));

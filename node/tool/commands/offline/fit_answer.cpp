@@ -72,8 +72,7 @@ FitAnswer fit_answer(const FitRequest& fit, FitInput input, const ProbeFiles& pr
                   told.answer.curve_class() != v1::CURVE_CLASS_UNCLASSIFIED;
   const auto say = [&](std::string note) {
     if (note.empty()) return;
-    complain(input.group.file + ": " + (input.is_alone ? "" : object_of(input.group)) + note,
-             kDone);
+    complain(input.group.file + ": " + object_of(input.group, input.is_alone) + note, kDone);
     told.notes.push_back(std::move(note));
   };
   say(note_of_tip_side(told.measured, told.answer, from));

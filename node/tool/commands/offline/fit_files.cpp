@@ -12,8 +12,7 @@ namespace {
 
 /// Says what there is to say of an input beside its answer.
 void tell_of(FitInput* input, const FitRequest& fit) {
-  const std::string whose =
-      input->group.file + ": " + (input->is_alone ? "" : object_of(input->group));
+  const std::string whose = input->group.file + ": " + object_of(input->group, input->is_alone);
   for (const std::string& warning : input->warnings) {
     complain("WARNING: " + whose + warning, kDone);
   }
