@@ -1,30 +1,37 @@
 #include "core/recognition/smooth/path_of_details.h"
 
-#include <algorithm>
 #include <cmath>
-
-#include "core/numerics/probability/negligible.h"
 
 namespace palpate {
 namespace {
 
-/// The highest degree whose direction noise does not turn; 0 = it turns that of a line as well. At
-/// its ends a polynomial of degree d turns within 1 / d^2 of its chord (A. A. Markov, 1889), and
-/// samples are moved, and weighed, by its direction (across_noise.h). Over a length l an error e of
-/// the slope comes back as
-///   12 (c_along - c_across) / l^2 e,
-/// with the noise's variances c, and the most of it that lies one way is less than their sum. So
-/// over as many deviations as nothing errs by less than 12 / 25 of it comes back, and directions
-/// settle.
+/// How much longer the noise is one way than the other: the difference of its two variances.
+double unevenness(const Eigen::Vector3d& covariance) {
+  return std::hypot(covariance.x() - covariance.z(), 2.0 * covariance.y());
+}
+
+/// The highest degree whose direction noise does not turn; 0 = it turns that of a line as well.
+/// Samples are moved along the path, and weighed, by its direction (across_noise.h). If that errs
+/// by e, their noise along the path still has e (c_along - c_across) in common with what lies
+/// across, with the noise's variances c, and a polynomial takes it up. Of e = P_d'(x) / h, P_d
+/// Legendre's polynomial over a half length h, it comes back as
+///   integral P_d'^2 / integral P_d^2 (c_along - c_across) / h^2 e
+///     = d (d + 1) (2 d + 1) / 2 (c_along - c_across) / h^2 e.
+/// Where less than half of it does, directions settle.
 int told_degree(const SectionFit& fit, const FitData& data) {
-  double longest = 0.0;  // variance
+  double sum = 0.0;
+  double weights = 0.0;
   for (std::size_t i = fit.section.begin; i < fit.section.end; ++i) {
-    const Eigen::Vector3d& covariance = data.details[i].covariance;
-    longest = std::max(longest, covariance.x() + covariance.z());
+    const double inverse = data.points[i].inverse_sigma;
+    sum += inverse * inverse * unevenness(data.details[i].covariance);
+    weights += inverse * inverse;
   }
-  const double shortest = kNegligibleDeviations * std::sqrt(longest);
-  const double told = std::sqrt(2.0 * fit.frame.half_length / shortest);
-  return told < fit.degree ? static_cast<int>(told) : fit.degree;
+  const double square = fit.frame.half_length * fit.frame.half_length;
+  int told = 0;
+  while (told < fit.degree && (told + 1) * (told + 2) * (2 * told + 3) * sum < square * weights) {
+    ++told;
+  }
+  return told;
 }
 
 }  // namespace

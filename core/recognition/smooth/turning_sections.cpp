@@ -23,14 +23,18 @@ constexpr double kFewestDeviations = 6.0;
 struct Block {
   PatchSpan points;
   Vec2 mean = Vec2::Zero();
+  double stated = 0.0;  ///< variance of the mean, by the noise that is stated; 0 = none is
 };
 
-Block block_of(const FitData& data, const PatchSpan& points) {
-  Block block{points, Vec2::Zero()};
+Block block_of(const FitData& data, const PatchSpan& points, bool sigma_known) {
+  Block block{points};
   for (std::size_t i = points.begin; i < points.end; ++i) {
     block.mean += data.points[i].position;
+    block.stated += sigma_known ? longest_variance(data, i) : 0.0;
   }
-  block.mean /= static_cast<double>(points.size());
+  const auto n = static_cast<double>(points.size());
+  block.mean /= n;
+  block.stated /= n * n;
   return block;
 }
 
@@ -88,11 +92,20 @@ double typical_variance(const FitData& data, const PatchSpan& patch,
                      : typical;
 }
 
+/// Variance of the distance between the means of two blocks, if samples typically have the variance
+/// `typical`. Where these two state more, it is what they state: noise that is longer along the
+/// path than across it, or larger there than elsewhere, turns chords as well.
+double variance_between(const Block& a, const Block& b, double typical) {
+  const double of_means =
+      1.0 / static_cast<double>(a.points.size()) + 1.0 / static_cast<double>(b.points.size());
+  return std::max(typical * of_means, a.stated + b.stated);
+}
+
 /// Where a patch is cut that is travelled from its first block on: each section is as long as its
-/// turn allows. Turns are those of chords whose squared length exceeds `least_square` * (1 / n +
-/// 1 / m), for means of n and m samples.
+/// turn allows. Turns are those of chords longer than kFewestDeviations of the noise of their ends;
+/// of all chords, without a `typical` variance of the noise.
 std::vector<std::size_t> cuts_of_chords(std::size_t samples, const std::vector<Block>& blocks,
-                                        double least_square) {
+                                        std::optional<double> typical) {
   std::vector<std::size_t> cuts;
   std::size_t begin = 0;
   std::size_t at = 0;
@@ -105,9 +118,8 @@ std::vector<std::size_t> cuts_of_chords(std::size_t samples, const std::vector<B
     const std::size_t here = at;
     at += block.points.size();
     const Vec2 chord = block.mean - last->mean;
-    const double of_means = 1.0 / static_cast<double>(block.points.size()) +
-                            1.0 / static_cast<double>(last->points.size());
-    if (!(chord.squaredNorm() > least_square * of_means)) {
+    const double noise = typical ? variance_between(block, *last, *typical) : 0.0;
+    if (!(chord.squaredNorm() > kFewestDeviations * kFewestDeviations * noise)) {
       continue;
     }
     if (before) {
@@ -131,10 +143,11 @@ std::vector<std::size_t> cuts_of_chords(std::size_t samples, const std::vector<B
 /// sections whichever way it is travelled, and none is a short remainder. If one of the two needs
 /// fewer sections, it alone.
 std::vector<PatchSpan> cut_by_chords(const FitData& data, const PatchSpan& patch,
-                                     const std::vector<Block>& blocks, double least_square) {
-  std::vector<std::size_t> cuts = cuts_of_chords(patch.size(), blocks, least_square);
+                                     const std::vector<Block>& blocks,
+                                     std::optional<double> typical) {
+  std::vector<std::size_t> cuts = cuts_of_chords(patch.size(), blocks, typical);
   std::vector<std::size_t> back =
-      cuts_of_chords(patch.size(), {blocks.rbegin(), blocks.rend()}, least_square);
+      cuts_of_chords(patch.size(), {blocks.rbegin(), blocks.rend()}, typical);
   std::reverse(back.begin(), back.end());
   for (std::size_t& cut : back) {
     cut = patch.size() - cut;
@@ -186,7 +199,7 @@ std::vector<std::size_t> cut_at_cusps(const FitData& data, const PatchSpan& patc
   return cuts;
 }
 
-std::vector<Block> blocks_of(const FitData& data, const PatchSpan& patch) {
+std::vector<Block> blocks_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
   // A block has at least four samples, so that its mean has half of their noise. With 47 blocks a
   // patch that goes all the way round has seven per radian. An odd number of them has one in the
   // middle, and so the same blocks from either end.
@@ -200,7 +213,8 @@ std::vector<Block> blocks_of(const FitData& data, const PatchSpan& patch) {
     return 2 * b < count ? b * n / count : n - (count - b) * n / count;
   };
   for (std::size_t b = 0; b < count; ++b) {
-    blocks.push_back(block_of(data, {patch.begin + before(b), patch.begin + before(b + 1)}));
+    blocks.push_back(
+        block_of(data, {patch.begin + before(b), patch.begin + before(b + 1)}, sigma_known));
   }
   return blocks;
 }
@@ -220,25 +234,24 @@ std::size_t half_way(const FitData& data, std::size_t a, std::size_t b) {
 }
 
 std::vector<PatchSpan> sections_of(const FitData& data, const PatchSpan& patch, bool sigma_known) {
-  const std::vector<Block> blocks = blocks_of(data, patch);
-  std::vector<PatchSpan> sections = cut_by_chords(data, patch, blocks, 0.0);
+  const std::vector<Block> blocks = blocks_of(data, patch, sigma_known);
+  std::vector<PatchSpan> sections = cut_by_chords(data, patch, blocks, std::nullopt);
   // A long chord is a sum of short ones and turns no more: a patch that these leave whole stays
   // whole, unless single samples go back.
   if (sections.size() == 1 && cut_at_cusps(data, patch, 0.0).empty()) {
     return sections;
   }
   const double variance = typical_variance(data, patch, blocks, sigma_known);
-  const double least_square = kFewestDeviations * kFewestDeviations * variance;
   std::vector<std::size_t> ends = cut_at_cusps(data, patch, variance);
   if (ends.empty()) {
-    return sections.size() == 1 ? sections : cut_by_chords(data, patch, blocks, least_square);
+    return sections.size() == 1 ? sections : cut_by_chords(data, patch, blocks, variance);
   }
   ends.push_back(patch.end);
   sections.clear();
   std::size_t begin = patch.begin;
   for (const std::size_t end : ends) {
     const PatchSpan arm{begin, end};
-    const auto of_arm = cut_by_chords(data, arm, blocks_of(data, arm), least_square);
+    const auto of_arm = cut_by_chords(data, arm, blocks_of(data, arm, sigma_known), variance);
     sections.insert(sections.end(), of_arm.begin(), of_arm.end());
     begin = end;
   }
