@@ -9,6 +9,9 @@ namespace palpate {
 /// Median of |normal variable|.
 inline constexpr double kMedianOfNormal = 0.6744897501960817;
 
+/// Median of the length of two normal variables, sqrt(2 ln 2).
+inline constexpr double kMedianInPlane = 1.1774100225154747;
+
 /// The z that |normal variable| exceeds with `probability` in (0, 1]. Newton's method on the
 /// logarithm of erfc, which is concave, starting from the leading term of the tail. Relative error
 /// below 1e-12 for probabilities down to 1e-300.

@@ -8,6 +8,7 @@
 #include "core/curves/curve.h"
 #include "core/numerics/matrices/small_cholesky.h"
 #include "core/recognition/coherent/coherent_cells.h"
+#include "core/recognition/fit/inverse_information.h"
 
 namespace palpate {
 namespace {

@@ -38,22 +38,6 @@ struct CanonicalFit {
 /// Chi-square of its points.
 double chi2_of(const CanonicalFit& fit);
 
-/// Covariance of n unknown components: infinite variances, no covariances.
-ShapePoseCovariance untold_covariance(Eigen::Index n);
-
-/// Inverse of the information of [shape; x; y; theta]; what the pose symmetry leaves free gets
-/// variance 0.
-struct InverseInformation {
-  ShapePoseCovariance covariance;
-  double log_determinant = 0.0;  ///< of the information, without the free directions
-  /// Least eigenvalue of the information scaled to a diagonal of ones, of those directions: what
-  /// rounding leaves of it is off by about epsilon.
-  double weakest = 0.0;
-};
-/// `theta`: the pose's.
-InverseInformation inverse_information(const ShapePoseCovariance& information,
-                                       CurveClass curve_class, double theta);
-
 /// Shape and pose alone.
 struct CanonicalPlace {
   ShapeParameters shape;

@@ -7,6 +7,7 @@
 #include "core/curves/curve.h"
 #include "core/numerics/matrices/small_cholesky.h"
 #include "core/numerics/probability/negligible.h"
+#include "core/recognition/fit/inverse_information.h"
 #include "core/recognition/modes/mode_search.h"
 
 namespace palpate {

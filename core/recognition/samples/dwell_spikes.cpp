@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics/probability/normal_law.h"
 #include "core/numerics/quantile.h"
 #include "core/recognition/samples/sample_block.h"
 
@@ -32,8 +33,7 @@ std::vector<double> distances_of(std::span<const StoredSample> readings, double 
 std::vector<bool> spikes_among(std::span<const StoredSample> readings, double default_sigma_m,
                                double false_alarm) {
   // A distance in the plane exceeds r deviations with the probability exp(-r^2 / 2): the median is
-  // at kMedian. It is known to 0.72 / sqrt(n) of itself.
-  constexpr double kMedian = 1.1774100225154747;
+  // at kMedianInPlane. It is known to 0.72 / sqrt(n) of itself.
   constexpr double kKnownTo = 0.72;
   constexpr double kDeviations = 3.0;
   const auto n = static_cast<double>(readings.size());
@@ -41,7 +41,7 @@ std::vector<bool> spikes_among(std::span<const StoredSample> readings, double de
   const std::vector<double> distances = distances_of(readings, default_sigma_m, is_stated);
   std::vector<double> sorted = distances;
   const double deviation =
-      std::max(median_of(sorted) / kMedian * (1.0 + kDeviations * kKnownTo / std::sqrt(n)),
+      std::max(median_of(sorted) / kMedianInPlane * (1.0 + kDeviations * kKnownTo / std::sqrt(n)),
                is_stated ? 1.0 : 0.0);
   // Most readings of a coarse scale may be one number: then they show no scatter.
   const double farthest = deviation > 0.0 ? deviation * std::sqrt(2.0 * std::log(n / false_alarm))

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/numerics/matrices/symmetric_eigen.h"
-#include "core/recognition/fit/canonical_fit.h"
+#include "core/recognition/fit/inverse_information.h"
 #include "core/recognition/tree/recognition_tree_tolerance.h"
 
 namespace palpate {

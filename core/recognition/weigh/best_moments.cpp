@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/recognition/coherent/coherent_moment.h"
+#include "core/recognition/fit/inverse_information.h"
 #include "core/recognition/modes/across_circle.h"
 #include "core/recognition/modes/moments.h"
 #include "core/recognition/modes/slices.h"

@@ -8,6 +8,7 @@
 
 #include "core/local/noise.h"
 #include "core/local/spikes/jumps.h"
+#include "core/numerics/probability/normal_law.h"
 #include "core/numerics/quantile.h"
 #include "core/recognition/samples/cleaned/turning_points.h"
 #include "core/recognition/samples/stroke_order.h"
@@ -92,11 +93,10 @@ std::optional<Lengths> lengths_of(std::span<const StoredSample> samples, double 
   // 0 where either is not known.
   const double stated_m = std::sqrt(stated_variance_m2(samples, default_sigma_m).value_or(0.0));
   // Passes of few samples, shorter than the blocks by which noise is estimated, are no noise: it
-  // makes second differences of 1 + 4 + 1 variances, the median of whose root is kMedian.
-  constexpr double kMedian = 1.1774100225154747;
+  // makes second differences of 1 + 4 + 1 variances, the median of whose root is kMedianInPlane.
   const double second_m = second_difference_m(positions);
   const double shown_m = stated_m > 0.0
-                             ? std::min(noise.sigma_m, second_m / (kMedian * std::sqrt(6.0)))
+                             ? std::min(noise.sigma_m, second_m / (kMedianInPlane * std::sqrt(6.0)))
                              : noise.sigma_m;
   const double sigma_m = std::max(shown_m, stated_m);
   if (noise.status != LocalStatus::Ok && sigma_m == 0.0) {
