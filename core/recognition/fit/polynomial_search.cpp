@@ -5,11 +5,11 @@
 #include <limits>
 #include <utility>
 
-#include "core/curves/algebraic/polynomial_curve.h"
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
 #include "core/recognition/fit/spline_limits.h"
+#include "core/recognition/fit/spline_pair.h"
 #include "core/recognition/fit/starts/axis_fit.h"
 
 namespace palpate {
@@ -31,10 +31,6 @@ AxisFit refine_axis_and_arms(std::span<const FitPoint> points, std::span<const P
   }
   return fit;
 }
-
-// By how much two walks may end apart in one valley.
-constexpr double kSameChi2 = 1e-2;   // of it
-constexpr double kSameAngle = 1e-2;  // rad, between their axes
 
 /// Ended in the same valley: seeds on both sides of one do.
 bool is_same_valley(const AxisFit& a, const AxisFit& b) {
@@ -154,44 +150,6 @@ void walk_more(const FitData& reduced, double chi2, PolynomialSeeds* seeds, Work
   std::inplace_merge(seeds->cubic_spline.begin() + 1, middle, seeds->cubic_spline.end(), is_deeper);
 }
 
-/// The best spline and another optimum: on the other side of c = 0, or of another valley.
-struct SplinePair {
-  std::optional<PolynomialFit> best;
-  std::optional<PolynomialFit> rival;
-};
-
-/// On which side of c = 0 a spline lies.
-bool has_loop(const PolynomialCoefficients& c) {
-  // About the vertex travel across the axis is c.
-  const auto vertex = vertex_of(c);
-  return vertex && first_derivative(c, *vertex).dot(c.col(3)) < 0.0;
-}
-
-/// Ended in the same valley, on the same side of c = 0, though not at its very end.
-bool is_same_valley(const PolynomialFit& a, const PolynomialFit& b) {
-  return std::abs(a.chi2 - b.chi2) <= kSameChi2 * std::max(1.0, a.chi2) &&
-         std::abs(cross(Vec2(a.coefficients.col(3).normalized()),
-                        Vec2(b.coefficients.col(3).normalized()))) <= kSameAngle &&
-         has_loop(a.coefficients) == has_loop(b.coefficients);
-}
-
-/// Takes a fit among the two best. What it replaces is the rival.
-void take(PolynomialFit fit, SplinePair* pair) {
-  if (!std::isfinite(fit.chi2)) {
-    return;
-  }
-  if (!pair->best || fit.chi2 < pair->best->chi2) {
-    if (!pair->best || !is_same_valley(fit, *pair->best)) {
-      std::swap(pair->best, pair->rival);
-    }
-    pair->best = std::move(fit);
-  } else if (is_same_valley(fit, *pair->best)) {
-    return;
-  } else if (!pair->rival || fit.chi2 < pair->rival->chi2) {
-    pair->rival = std::move(fit);
-  }
-}
-
 SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced,
                       double out_of_reach, WorkBudget& work) {
   SplinePair pair;
@@ -206,28 +164,6 @@ SplinePair fit_spline(const std::vector<AxisFit>& walked, const FitData& reduced
     take(refined_twin(*best, reduced, out_of_reach, work), &pair);
   }
   return pair;
-}
-
-/// The spline on the other side of c = 0 of one that is refined (twin_of): a walk beside a sharp
-/// bend may have ended too far from it to tell. nullopt where it is a parabola.
-std::optional<PolynomialFit> twin_of(const PolynomialFit& fit) {
-  const auto vertex = vertex_of(fit.coefficients);
-  if (!vertex) {
-    return std::nullopt;
-  }
-  PolynomialFit twin = fit;
-  PolynomialCoefficients& c = twin.coefficients;
-  c = PolynomialCurve2{fit.coefficients}.shifted(*vertex).coefficients;
-  const Vec2 across = c.col(3);
-  const double moved = 4.0 / 3.0 * c.col(1).dot(across) / across.squaredNorm();
-  c.col(0) -= moved * c.col(2);
-  c.col(1) = -c.col(1);
-  for (double& t : twin.t) {
-    const double from_vertex = t - *vertex;
-    t = std::copysign(std::sqrt(std::max(from_vertex * from_vertex + moved, 0.0)), from_vertex);
-  }
-  normalise_parameter(PolynomialModel::CubicSpline, &twin);
-  return c.allFinite() ? std::optional(std::move(twin)) : std::nullopt;
 }
 
 /// Between optima that the data leave nearly as probable the prior chooses, and one that was not
