@@ -18,12 +18,11 @@ namespace {
 constexpr int kSamples = 111;
 
 /// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction and size.
+/// prior's factors are independent, but for an ellipse's direction and size, and a hyperbola's.
 class CoordinateLaw {
  public:
   CoordinateLaw(Chart chart, int k) {
     constexpr int kSteps = 200000;
-    const CurveClass curve_class = chart.curve_class;
     const TouchedVector centre = prior_centre(chart);
     double sum = 0.0;
     double last = 0.0;
@@ -32,9 +31,6 @@ class CoordinateLaw {
       const double part = (i + 0.5) / kSteps;
       TouchedVector z = centre;
       z[k] += k == 0 && !chart.as_arc ? 40.0 * (part - 0.5) : 2.0 * std::tan(kPi * (part - 0.5));
-      if (curve_class == CurveClass::Hyperbola && k == 1 && z[k] <= 0.0) {
-        continue;
-      }
       const double density = std::exp(log_prior(chart, z) - log_prior(chart, centre));
       if (!places_.empty()) {
         sum += 0.5 * (density + last) * (z[k] - places_.back());
@@ -58,11 +54,35 @@ class CoordinateLaw {
   std::vector<double> sums_;
 };
 
+/// A hyperbola's coordinates of one of the halves of its prior.
+TouchedVector hyperbola_of(HyperbolaHalf half, std::mt19937_64& rng) {
+  TouchedVector z = TouchedVector::Zero();
+  // By the inverses of their distribution functions: angles, and the squared hyperbolic secant.
+  const double log_of_size = std::atanh(uniform(rng, -1.0, 1.0));
+  constexpr int kFreedom = 6;
+  constexpr double kScale = 2.0;
+  const double place =
+      kScale / std::sqrt(kFreedom) * std::student_t_distribution<double>(kFreedom)(rng);
+  if (half == HyperbolaHalf::Tip) {
+    z[1] = 1.0 + std::tan(uniform(rng, -0.25 * kPi, 0.5 * kPi));  // Cauchy's above 0
+    z[2] = place;
+  } else {
+    const double square = uniform(rng, 0.0, 1.0);  // of b / c
+    z[1] = square / (1.0 - square);
+    z[2] = place / std::sqrt(square);  // w = e y / p = c / b y / b
+  }
+  z[0] = expected_log_length(half, z) + log_of_size;
+  return z;
+}
+
 /// The prior in one set of coordinates, whose lengths are in half extents of what is touched.
 class ChartLaw {
  public:
   explicit ChartLaw(Chart chart) : chart_(chart) {
     for (int k = 0; k < shape_coordinates(chart.curve_class); ++k) {
+      if (chart.curve_class == CurveClass::Hyperbola) {
+        break;  // drawn by halves
+      }
       if (chart.curve_class != CurveClass::Ellipse || k == 0) {
         coordinates_.emplace_back(chart, k);
       }
@@ -85,6 +105,9 @@ class ChartLaw {
         angle = uniform(rng, 0.0, kPi);
       } while (uniform(rng, 0.0, 1.0) > speed());
       z[2] = std::atan2(std::sqrt(m) * std::cos(angle), -std::sin(angle));
+    }
+    if (chart_.curve_class == CurveClass::Hyperbola) {
+      z = hyperbola_of(random_sign(rng) > 0.0 ? HyperbolaHalf::Tip : HyperbolaHalf::Wedge, rng);
     }
     TouchedShape like;
     like.values[0] = random_sign(rng);

@@ -14,11 +14,13 @@ constexpr double kChange = 0.25;
 
 /// Whether a class that had more than `most` has less than a fiftieth of it left. New samples of a
 /// true class do that to its probability once in fifty times at most (Ville's inequality: against
-/// it, likelihood ratios are martingales). So its fit may have been lost.
+/// it, likelihood ratios are martingales). So its fit may have been lost. It is for certain where
+/// nothing is left of more than a thousandth: that is no evidence against a class but none of it.
 bool has_lost_one(const ClassProbabilities& now, const ClassProbabilities& before, double most) {
   constexpr double kLeft = 0.02;
+  constexpr double kSeen = 1e-3;
   for (std::size_t i = 1; i < now.size(); ++i) {
-    if (before[i] > most && now[i] < kLeft * before[i]) {
+    if ((before[i] > most && now[i] < kLeft * before[i]) || (before[i] > kSeen && now[i] == 0.0)) {
       return true;
     }
   }

@@ -56,6 +56,25 @@ struct Place {
   double rate = 1.0;
 };
 
+/// A hyperbola of one half of its prior, of a point of the unit square.
+Place place_of_half(HyperbolaHalf half, const std::array<double, 3>& u) {
+  const TouchedVector scale = 2.0 * prior_widths({CurveClass::Hyperbola}, TouchedVector::Zero());
+  const Mapped place = one_side(u[1], scale[2]);
+  Place result;
+  if (half == HyperbolaHalf::Tip) {
+    const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
+    result.z.segment<2>(1) << 1.0 + away.value, place.value;
+    result.rate = away.rate * place.rate;
+  } else {
+    const Mapped root = one_side(u[0], 1.0);  // of m: the tangent of half the angle
+    const double w_over_place = std::hypot(1.0, root.value) / root.value;
+    result.z.segment<2>(1) << root.value * root.value, w_over_place * place.value;
+    result.rate = 2.0 * root.value * root.rate * w_over_place * place.rate;
+  }
+  result.z[0] = expected_log_length(half, result.z);
+  return result;
+}
+
 /// Of a point of the unit cube. Dense where curvature passes through 0.
 Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
   Place place;
@@ -77,12 +96,6 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
       const double y = ratio * std::cos(angle);
       set(2, {std::atan2(y, x), 0.5 * kPi * part.rate * ratio / (x * x + y * y)});
       place.z[0] = expected_log_length(curve_class, place.z);
-      break;
-    }
-    case CurveClass::Hyperbola: {
-      const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
-      set(1, {1.0 + away.value, away.rate});
-      set(2, one_side(u[1], scale[2]));
       break;
     }
     case CurveClass::Parabola:
@@ -109,7 +122,11 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
   return place;
 }
 
-std::vector<PriorShape> shapes_of(CurveClass curve_class) {
+/// The shapes of a lattice's points, placed by `place_at_point`, of which each has as much of the
+/// prior as `log_prior_at` says. Their weights sum to `share`.
+template <typename PlaceAt, typename LogPriorAt>
+std::vector<PriorShape> shapes_of(CurveClass curve_class, double share,
+                                  const PlaceAt& place_at_point, const LogPriorAt& log_prior_at) {
   const int own = shape_coordinates(curve_class);
   const Lattice lattice = lattice_of(own - 1);
   const TouchedShape like{Eigen::Vector3d::Ones(), 0.0};
@@ -122,7 +139,7 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class) {
       part = at - std::floor(at);
       at = lattice.generator * part;
     }
-    const Place place = place_at(curve_class, u);
+    const Place place = place_at_point(u);
     const auto shape = shape_at({curve_class}, place.z, like);
     const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
     if (!curve || !(place.rate > 0.0)) {
@@ -130,18 +147,34 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class) {
     }
     const LocalGeometry local = geometry(*curve, shape->t);
     const TouchedVector widths = prior_widths({curve_class}, place.z);
-    const double weight = place.rate * std::exp(log_prior({curve_class}, place.z)) /
-                          widths.segment(1, own - 1).prod();
-    if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s)) {
+    const double weight =
+        place.rate * std::exp(log_prior_at(place.z)) / widths.segment(1, own - 1).prod();
+    if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s) && std::isfinite(weight)) {
       shapes.push_back({place.z, local.kappa, local.kappa_s, weight});
       sum += weight;
     }
   }
   for (PriorShape& shape : shapes) {
-    shape.weight /= sum;
+    shape.weight *= share / sum;
     shape.log_weight = std::log(shape.weight);
     shape.log_curvature = std::log(std::abs(shape.curvature));
     shape.relative_rate = std::asinh(shape.rate / (shape.curvature * shape.curvature));
+  }
+  return shapes;
+}
+
+std::vector<PriorShape> shapes_of(CurveClass curve_class) {
+  if (curve_class != CurveClass::Hyperbola) {
+    return shapes_of(
+        curve_class, 1.0, [&](const auto& u) { return place_at(curve_class, u); },
+        [&](const TouchedVector& z) { return log_prior({curve_class}, z); });
+  }
+  std::vector<PriorShape> shapes;
+  for (const HyperbolaHalf half : {HyperbolaHalf::Tip, HyperbolaHalf::Wedge}) {
+    const auto of_half = shapes_of(
+        curve_class, 0.5, [&](const auto& u) { return place_of_half(half, u); },
+        [&](const TouchedVector& z) { return log_prior_of_half(half, z); });
+    shapes.insert(shapes.end(), of_half.begin(), of_half.end());
   }
   return shapes;
 }

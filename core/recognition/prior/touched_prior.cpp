@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "core/numerics/probability/log_add.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/student_law.h"
 
@@ -40,7 +42,8 @@ constexpr StudentLaw kBend{4, 3.0};
 /// m = e^2 - 1 of hyperbolas, about 1: Cauchy's.
 constexpr StudentLaw kEccentricity{1, 1.0};
 
-/// log of half the diagonal of an ellipse's box over p, m = b^2 / a^2, and its derivative.
+/// log of half the diagonal of an ellipse's box, or of half the distance of a hyperbola's foci,
+/// over p, m = b^2 / a^2, and its derivative.
 double log_diagonal_over_p(double m) { return 0.5 * std::log1p(m) - std::log(m); }
 double log_diagonal_derivative(double m) { return 0.5 / (1.0 + m) - 1.0 / m; }
 
@@ -59,6 +62,19 @@ double log_of_size(double x) {
   return -2.0 * (away + std::log1p(std::exp(-2.0 * away)) - std::numbers::ln2);
 }
 double log_of_size_derivative(double x) { return -2.0 * std::tanh(x); }
+
+/// A hyperbola's half as a wedge: its size over the middle, and its place y / b over w = e y / p.
+double log_size_of_wedge(const TouchedVector& z) {
+  return z[0] + log_diagonal_over_p(z[1]) - kLogSize;
+}
+double wedge_place_over_w(double m) { return std::sqrt(m / (1.0 + m)); }
+
+/// The share of the wedges in a hyperbola's prior at z.
+double share_of_wedges(const TouchedVector& z) {
+  const double more =
+      log_prior_of_half(HyperbolaHalf::Tip, z) - log_prior_of_half(HyperbolaHalf::Wedge, z);
+  return 1.0 / (1.0 + std::exp(more));
+}
 
 /// A quarter of an ellipse's perimeter over a, right to 4e-4 (S. Ramanujan, 1914).
 double quarter_perimeter_over_a(double m) {
@@ -101,6 +117,29 @@ double expected_log_length(CurveClass curve_class, const TouchedVector& z) {
   return z[0] - log_size(curve_class, z);
 }
 
+double expected_log_length(HyperbolaHalf half, const TouchedVector& z) {
+  return z[0] -
+         (half == HyperbolaHalf::Tip ? log_size(CurveClass::Hyperbola, z) : log_size_of_wedge(z));
+}
+
+double log_prior_of_half(HyperbolaHalf half, const TouchedVector& z) {
+  const double m = z[1];
+  if (half == HyperbolaHalf::Tip) {
+    return log_of_size(log_size(CurveClass::Hyperbola, z)) + kEccentricity.log(m - 1.0) +
+           kSlope.log(z[2]);
+  }
+  if (!(m > 0.0)) {
+    return -std::numeric_limits<double>::infinity();  // next to the parabola it is endless
+  }
+  // b^2 / c^2 = m / (1 + m) is uniform, c half the distance of the foci: straight at both ends,
+  // where curvature in units of c is as its root and as that of what it lacks of 1. The density of
+  // m, 1 / (1 + m)^2, over the height of Cauchy's law above 0, 1 / (0.75 pi), times the place's
+  // rate by w.
+  const double rate = wedge_place_over_w(m);
+  return log_of_size(log_size_of_wedge(z)) + std::log(0.75 * kPi * rate) - 2.0 * std::log1p(m) +
+         kSlope.log(rate * z[2]);
+}
+
 TouchedVector prior_centre(Chart chart) {
   TouchedVector centre = TouchedVector::Zero();
   if (chart.as_arc) {
@@ -129,8 +168,8 @@ TouchedVector prior_widths(Chart chart, const TouchedVector& z) {
           2.0 * quarter_perimeter_over_a(z[1]) * std::sqrt(z[1]) * kUniformWidth;
       break;
     case CurveClass::Hyperbola:
-      // Three quarters of the law of m are positive. The place is w = e y / p, as which curvature
-      // falls: p kappa = (1 + w^2)^(-3/2), e = 1 the parabola's.
+      // Of the half about the tip. Three quarters of the law of m are positive. The place is w = e
+      // y / p, as which curvature falls: p kappa = (1 + w^2)^(-3/2), e = 1 the parabola's.
       widths.head<3>() << kSizeWidth, 0.75 * kEccentricity.width(), kSlope.width();
       break;
     case CurveClass::Parabola:
@@ -183,7 +222,9 @@ double log_prior(Chart chart, const TouchedVector& z) {
     case CurveClass::Parabola:
       return of_size + kSlope.log(z[1]);
     case CurveClass::Hyperbola:
-      return of_size + kEccentricity.log(z[1] - 1.0) + kSlope.log(z[2]);
+      return log_add(log_prior_of_half(HyperbolaHalf::Tip, z),
+                     log_prior_of_half(HyperbolaHalf::Wedge, z)) -
+             std::numbers::ln2;
     case CurveClass::CubicalParabola:
       return of_size + kSlope.log(z[1]) + kPlaceFromInflection.log(z[2]);
     case CurveClass::SemiCubicalParabola:
@@ -229,10 +270,23 @@ TouchedVector log_prior_gradient(Chart chart, const TouchedVector& z) {
     case CurveClass::Parabola:
       gradient[1] = kSlope.derivative(z[1]);
       break;
-    case CurveClass::Hyperbola:
+    case CurveClass::Hyperbola: {
       gradient[1] = kEccentricity.derivative(z[1] - 1.0);
       gradient[2] = kSlope.derivative(z[2]);
+      const double share = share_of_wedges(z);
+      if (share > 0.0) {
+        const double m = z[1];
+        const double by_w = wedge_place_over_w(m);
+        const double of_place = kSlope.derivative(by_w * z[2]);
+        TouchedVector of_wedge = TouchedVector::Zero();
+        of_wedge[0] = log_of_size_derivative(log_size_of_wedge(z));
+        of_wedge[1] = of_wedge[0] * log_diagonal_derivative(m) - 2.0 / (1.0 + m) +
+                      0.5 / (m * (1.0 + m)) * (1.0 + of_place * z[2] * by_w);
+        of_wedge[2] = of_place * by_w;
+        gradient += share * (of_wedge - gradient);
+      }
       break;
+    }
     case CurveClass::CubicalParabola:
       gradient[1] = kSlope.derivative(z[1]);
       gradient[2] = kPlaceFromInflection.derivative(z[2]);
@@ -265,6 +319,8 @@ TouchedVector tail_weights(Chart chart, const TouchedVector& z) {
   TouchedVector away = z - prior_centre(chart);
   if (curve_class == CurveClass::Ellipse) {
     away.head<3>() << log_size(curve_class, z), 0.0, std::remainder(z[2], kPi);  // m has no tail
+  } else if (curve_class == CurveClass::Hyperbola && share_of_wedges(z) > 0.5) {
+    away.head<2>() << log_size_of_wedge(z), 0.0;  // nor has b / c
   }
   for (int k = 0; k < shape_coordinates(curve_class); ++k) {
     const double curvature = away[k] != 0.0 ? -slope[k] / away[k] : 0.0;

@@ -19,8 +19,18 @@ double expected_log_length(CurveClass curve_class, const TouchedVector& z);
 /// of an ellipse.
 double log_length_over_size(CurveClass curve_class);
 
+/// The hyperbola's prior, half and half: touched about its tip, the size that of its bend; and a
+/// wedge with a rounded edge, the size half the distance c of its foci, any b^2 / c^2, and
+/// places on its arms by y / b.
+enum class HyperbolaHalf { Tip, Wedge };
+
+/// As expected_log_length and log_prior, if all of the prior were this half.
+double expected_log_length(HyperbolaHalf half, const TouchedVector& z);
+double log_prior_of_half(HyperbolaHalf half, const TouchedVector& z);
+
 /// log of (prior density at z / density that a normal law of the widths has at its centre): 0 at
-/// the prior's centre, and for a spline that is no arc the log of 1 / 2.
+/// the prior's centre, but the log of 1 / 2 for a spline that is no arc, and about that for a
+/// hyperbola.
 double log_prior(Chart chart, const TouchedVector& z);
 
 /// log of the prior's density by the coordinates of shape and place, up to a constant.

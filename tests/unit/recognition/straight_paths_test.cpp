@@ -34,12 +34,20 @@ TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
       z[2] = std::atan2(std::sqrt(z[1]) * std::cos(angle), -std::sin(angle));
       break;
     }
-    case CurveClass::Hyperbola:
-      do {
-        z[1] = 1.0 + std::tan(kPi * (uniform(rng) - 0.5));
-      } while (!(z[1] > 0.0));
-      z[2] = student(6, 2.0, rng);
+    case CurveClass::Hyperbola: {
+      const double place = student(6, 2.0, rng);
+      if (uniform(rng) < 0.5) {
+        do {
+          z[1] = 1.0 + std::tan(kPi * (uniform(rng) - 0.5));
+        } while (!(z[1] > 0.0));
+        z[2] = place;
+      } else {  // a wedge of the size sqrt(20), its place that of y / b
+        const double square = uniform(rng);
+        z.head<3>() << std::log(std::sqrt(20.0) * square / std::sqrt(1.0 - square)),
+            square / (1.0 - square), place / std::sqrt(square);
+      }
       break;
+    }
     case CurveClass::Parabola:
       z[1] = student(6, 2.0, rng);
       break;

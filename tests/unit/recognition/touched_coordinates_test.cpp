@@ -54,18 +54,24 @@ TEST_P(TouchedCoordinatesOf, ThereAndBack) {
   }
 }
 
-/// Integral over coordinate k of the prior's density, the others at the centre.
-double mass_along(Chart chart, TouchedVector centre, int k, double low, double high) {
+/// Integral over coordinate k of exp(log_prior_at(z)), over what a normal law has of `width`.
+template <typename LogPriorAt>
+double integral_along(const LogPriorAt& log_prior_at, TouchedVector z, double width, int k,
+                      double low, double high) {
   constexpr int kSteps = 400000;
-  const double at_centre = log_prior(chart, centre);
-  const double width = prior_widths(chart, centre)[k];
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    TouchedVector z = centre;
     z[k] = low + (i + 0.5) * (high - low) / kSteps;
-    sum += std::exp(log_prior(chart, z) - at_centre);
+    sum += std::exp(log_prior_at(z));
   }
   return sum * (high - low) / kSteps / (width * std::sqrt(2.0 * kPi));
+}
+
+/// Integral over coordinate k of the prior's density, the others at the centre.
+double mass_along(Chart chart, const TouchedVector& centre, int k, double low, double high) {
+  const double at_centre = log_prior(chart, centre);
+  return integral_along([&](const TouchedVector& z) { return log_prior(chart, z) - at_centre; },
+                        centre, prior_widths(chart, centre)[k], k, low, high);
 }
 
 TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
@@ -108,10 +114,45 @@ TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
   }
   EXPECT_NEAR(prior_widths({CurveClass::Ellipse}, TouchedVector::Ones())[1] * std::sqrt(2.0 * kPi),
               1.0, 1e-14);
-  TouchedVector hyperbola = centre_of(CurveClass::Hyperbola);
-  hyperbola[1] = 1.0;
-  EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 1, 0.0, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along({CurveClass::Hyperbola}, hyperbola, 2, -kFar, kFar), 1.0, kTail);
+}
+
+/// Both halves of the hyperbola's prior, of which the prior is the mean.
+TEST(TouchedCoordinates, BothHalvesOfTheHyperbolasPriorAreDensities) {
+  constexpr double kFar = 2000.0;
+  constexpr double kTail = 2.0 * 2.0 / (3.14 * kFar) + 1e-4;
+  const TouchedVector widths = prior_widths({CurveClass::Hyperbola}, TouchedVector::Zero());
+  const auto of_tip = [](const TouchedVector& z) {
+    return log_prior_of_half(HyperbolaHalf::Tip, z);
+  };
+  const auto of_wedge = [](const TouchedVector& z) {
+    return log_prior_of_half(HyperbolaHalf::Wedge, z);
+  };
+  TouchedVector tip = TouchedVector::Zero();
+  tip[1] = 1.0;
+  tip[0] = expected_log_length(HyperbolaHalf::Tip, tip);
+  EXPECT_EQ(of_tip(tip), 0.0);
+  EXPECT_NEAR(integral_along(of_tip, tip, widths[0], 0, -40.0, 40.0), 1.0, 1e-6);
+  EXPECT_NEAR(integral_along(of_tip, tip, widths[1], 1, 0.0, kFar), 1.0, kTail);
+  EXPECT_NEAR(integral_along(of_tip, tip, widths[2], 2, -kFar, kFar), 1.0, kTail);
+  // Of wedges the size is half the distance c of the foci, the place y / b, and b^2 / c^2 uniform.
+  for (const double square : {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99}) {
+    const double m = square / (1.0 - square);
+    TouchedVector wedge = TouchedVector::Zero();
+    wedge[1] = m;
+    wedge[0] = 0.5 * std::log(20.0) + std::log(m / std::sqrt(1.0 + m));  // p of that size
+    EXPECT_NEAR(expected_log_length(HyperbolaHalf::Wedge, wedge), wedge[0], 1e-14) << m;
+    const double at_size = of_wedge(wedge);
+    const auto by_size = [&](const TouchedVector& z) { return of_wedge(z) - at_size; };
+    EXPECT_NEAR(integral_along(by_size, wedge, widths[0], 0, -40.0, 40.0), 1.0, 1e-6) << m;
+    const double far = kFar / std::sqrt(square);
+    const double by_m = integral_along(of_wedge, wedge, widths[2], 2, -far, far) /
+                        (widths[1] * std::sqrt(2.0 * kPi));
+    EXPECT_NEAR(by_m * std::pow(1.0 - square, -2), 1.0, kTail) << m;
+    wedge[2] = 0.3;
+    EXPECT_NEAR(log_prior({CurveClass::Hyperbola}, wedge),
+                std::log(0.5 * (std::exp(of_tip(wedge)) + std::exp(of_wedge(wedge)))), 1e-13)
+        << m;
+  }
 }
 
 /// Places of an ellipse are as probable as their share of the perimeter.
@@ -147,7 +188,9 @@ TEST_P(TouchedCoordinatesOf, DerivativesOfThePriorAreThoseOfDifferences) {
       const double difference =
           (log_prior(GetParam(), ahead) - log_prior(GetParam(), behind)) / (2.0 * kStep);
       // Rounding over the step, and third derivatives of up to its power -3 by m.
-      const double third = GetParam().curve_class == CurveClass::Ellipse ? std::pow(z[1], -3) : 1.0;
+      const bool has_m = GetParam().curve_class == CurveClass::Ellipse ||
+                         GetParam().curve_class == CurveClass::Hyperbola;
+      const double third = has_m ? std::pow(z[1], -3) : 1.0;
       EXPECT_NEAR(gradient[k], difference, 1e-8 + 100.0 * kStep * kStep * third) << i << ' ' << k;
     }
   }
