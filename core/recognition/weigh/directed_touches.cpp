@@ -1,11 +1,44 @@
 #include "core/recognition/weigh/directed_touches.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
 
+#include "core/recognition/samples/tips/bend_to_one_side.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
+
+namespace {
+
+/// How strokes travel along the direction that they have most in common: along a straight edge, or
+/// a curve that does not turn back.
+std::vector<double> senses_in_common(const FitData& touches) {
+  const auto middle_of = [&](std::size_t p) {
+    return touches.points[touches.patches[p].begin + touches.patches[p].size() / 2].tangent;
+  };
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
+  for (std::size_t p = 0; p < touches.patches.size(); ++p) {
+    squares += middle_of(p) * middle_of(p).transpose();
+  }
+  const double angle = 0.5 * std::atan2(2.0 * squares(0, 1), squares(0, 0) - squares(1, 1));
+  const Vec2 common(std::cos(angle), std::sin(angle));
+  std::vector<double> senses;
+  for (std::size_t p = 0; p < touches.patches.size(); ++p) {
+    senses.push_back(common.dot(middle_of(p)));
+  }
+  return senses;
+}
+
+}  // namespace
+
+bool have_other_radii(const FitData& touches) {
+  return std::any_of(touches.points.begin(), touches.points.end(), [&](const FitPoint& point) {
+    return point.offset != touches.points.front().offset;
+  });
+}
 
 bool are_strokes(const FitData& touches) {
   return std::all_of(touches.patches.begin(), touches.patches.end(),
@@ -40,6 +73,12 @@ DirectedTouches directed_touches(std::span<const StoredPatch> patches, const Sid
   }
   if (result.bends.empty()) {
     result.bends = turns_of(result.touches);
+  }
+  if (have_other_radii(result.touches)) {
+    result.bends = bends_to_inside(result.touches, std::move(result.bends));
+    if (are_strokes(result.touches)) {
+      result.senses = senses_in_common(result.touches);
+    }
   }
   auto bend = result.bends.begin();
   for (const StoredPatch& patch : patches) {

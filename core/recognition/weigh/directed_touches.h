@@ -20,6 +20,9 @@ struct DirectedTouches {
   bool told;  ///< of SideContext::directions_told
 };
 
+/// Whether tips are of different radii: then their centres lie on different curves.
+bool have_other_radii(const FitData& touches);
+
 /// Whether the way of each tip is seen.
 bool are_strokes(const FitData& touches);
 

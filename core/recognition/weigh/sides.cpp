@@ -101,6 +101,39 @@ class TriedWays {
     }
   }
 
+  /// Of tips of different radii no curve of the centres tells where strokes that hardly bend have
+  /// theirs. Where a few of them lie otherwise than the others make probable, as on the arms of a
+  /// cusp: until all points have a curve.
+  void try_straight_strokes_otherwise() {
+    constexpr std::size_t kMost = 3;  // of such strokes: fourteen ways
+    if (!have_other_radii(seen_.touches) || possible_.ways.size() < 2) {
+      return;
+    }
+    const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);
+    std::vector<std::size_t> straight;
+    for (std::size_t p = 0; p < known.size(); ++p) {
+      const auto patch = seen_.touches.patch(p);
+      if (known[p] == 0 && patch.size() > 1 && !certain_turn(patch)) {
+        straight.push_back(p);
+      }
+    }
+    const std::size_t others = straight.size() <= kMost ? std::size_t{1} << straight.size() : 0;
+    for (std::size_t other = 1; other < others; ++other) {
+      for (std::size_t of = 0; of < 2 && !any_fits_all() && by_.work.allows(); ++of) {
+        std::vector<int> way = possible_.ways[of];
+        for (std::size_t k = 0; k < straight.size(); ++k) {
+          way[straight[k]] *= (other >> k & 1U) != 0 ? -1 : 1;
+        }
+        try_all({way});
+      }
+    }
+  }
+
+  bool any_fits_all() const {
+    return std::any_of(choices_.begin(), choices_.end(),
+                       [&](const SideChoice& choice) { return fits_all(choice, by_); });
+  }
+
   /// The choice where no tips are to be removed.
   SideChoice without_tips() const {
     SideChoice choice;
@@ -267,6 +300,9 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   };
   if (may_turn && !turn_first && by.work.allows() && !any_that(tells_sides)) {
     tried.try_along_centres();
+  }
+  if (!tried.any_fits_all()) {
+    tried.try_straight_strokes_otherwise();
   }
   sided.choices = std::move(tried).take();
   sided.centres = centres.next_start();
