@@ -72,27 +72,36 @@ bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatc
                                          std::chrono::duration<double> longest,
                                          const std::function<bool()>& is_stopped) {
   const SteadyTime start = now_steady();
-  auto found = probes_.find(probe);
-  if (found == probes_.end()) {
-    if (!is_valid_name(probe)) return false;
-    found = probes_.emplace(probe, Probe{make_topic(TopicKind::Contact, probe)}).first;
-  }
+  Probe* const state = state_of(probe);
+  if (state == nullptr) return false;
   take_subscriptions();
-  Probe& state = found->second;
   v1::Header& header = *batch.mutable_header();
-  header.set_source(found->first);
+  header.set_source(std::string(probe));
   header.set_epoch(epoch_);
-  header.set_seq(state.next_seq++);
+  header.set_seq(state->next_seq++);
   for (;;) {
     // Anew for each attempt: the time of waiting for room is not on the way.
     header.set_stamp_ns(unix_time_ns());
     batch.SerializeToString(&buffer_);
-    if (send_now(socket_, state.topic, buffer_)) return true;
+    if (send_now(socket_, state->topic, buffer_)) return true;
     if (is_stopped() || now_steady() - start >= longest) return false;
     // An XPUB is always writable to a poll, so there is nothing to wait for but time.
     constexpr std::chrono::milliseconds kAgain{1};
     std::this_thread::sleep_for(kAgain);
   }
+}
+
+void ContactPublisher::leave_out(std::string_view probe, std::uint64_t messages) {
+  if (Probe* const state = state_of(probe)) state->next_seq += messages;
+}
+
+ContactPublisher::Probe* ContactPublisher::state_of(std::string_view probe) {
+  auto found = probes_.find(probe);
+  if (found == probes_.end()) {
+    if (!is_valid_name(probe)) return nullptr;
+    found = probes_.emplace(probe, Probe{make_topic(TopicKind::Contact, probe)}).first;
+  }
+  return &found->second;
 }
 
 bool ContactPublisher::recognizer_has_gone() {

@@ -59,6 +59,10 @@ class ContactPublisher {
                          std::chrono::duration<double> longest,
                          const std::function<bool()>& is_stopped);
 
+  /// Leaves so many numbers out before the probe's next message, for messages that are known to be
+  /// lost: a recognizer counts them as missing. Nothing if the probe's name is invalid.
+  void leave_out(std::string_view probe, std::uint64_t messages);
+
   /// Longest time that the destructor waits for messages that are published but not sent; 0.1 s if
   /// never called. A slow recognizer then still gets them; a recognizer that has gone is not waited
   /// for.
@@ -77,6 +81,8 @@ class ContactPublisher {
     std::uint64_t next_seq = 0;
   };
 
+  /// nullptr if the name is invalid.
+  Probe* state_of(std::string_view probe);
   void take_subscriptions();
 
   zmq::context_t context_;

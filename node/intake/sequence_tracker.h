@@ -25,6 +25,9 @@ constexpr bool is_news(SequenceEvent event) {
 
 class SequenceTracker {
  public:
+  /// A sender of 1 kHz needs 50 days for so many messages.
+  static constexpr std::uint64_t kLargestGap = std::uint64_t{1} << 32U;
+
   /// Classifies a message of (epoch, seq) without recording it.
   SequenceEvent judge(std::uint64_t epoch, std::uint64_t seq) const {
     if (!started_) return SequenceEvent::First;
@@ -76,8 +79,6 @@ class SequenceTracker {
     if (retired_count_ < retired_.size()) ++retired_count_;
   }
 
-  // A sender of 1 kHz needs 50 days for so many messages.
-  static constexpr std::uint64_t kLargestGap = std::uint64_t{1} << 32U;
   // Number of former epochs remembered. Old connections drain within seconds, so a handful of
   // restarts is enough.
   static constexpr std::size_t kRetiredEpochs = 8;

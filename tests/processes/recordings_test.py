@@ -134,6 +134,28 @@ class Replays(unittest.TestCase):
             self.assertEqual(code, 1, err)
             self.assertIn("damaged in 1 places", err)
 
+    def test_what_was_lost_before_the_recording_stays_lost(self):
+        with Bus() as bus:
+            file = bus.folder / "gaps.rec"
+            record = bus.start(TOOL, "record", file, "--contacts", bus.contacts, "--count", "8",
+                               stderr=subprocess.PIPE)
+            probe = Probe(bus.publisher())
+            messages = [probe.batch(10 * number) for number in range(10)]
+            # 3, 6 and 8 never arrive, 5 does twice.
+            for number in (0, 1, 2, 4, 5, 5, 7, 9):
+                probe.send(messages[number])
+            _, err = record.communicate(timeout=10)
+            self.assertIn("8 messages; 3 messages missing", err.decode() if isinstance(err, bytes) else err)
+            batches = self.replayed(file, "--fast")
+            numbers = [batch.header.seq - batches[0].header.seq for batch in batches]
+            self.assertEqual(numbers, [0, 1, 2, 4, 5, 7, 9])
+            with Bus() as other:
+                other.start_node()
+                code, _, err = self.replay(other, file, "--fast")
+                self.assertEqual(code, 0, err)
+                self.assertIn("3 messages of the probes not in it", err)
+                self.assertIn("1 message left out: not newer", err)
+
     def test_stamps_of_strangers(self):
         with Bus() as bus:
             bus.start_node()

@@ -1,15 +1,20 @@
 // palpate record: messages of the bus into a file.
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
 #include "node/files/counted.h"
 #include "node/files/recording.h"
+#include "node/intake/sequence_tracker.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/listening_place.h"
+#include "node/tool/commands/live/topic_count.h"
 #include "node/tool/text/progress.h"
 
 namespace palpate {
@@ -81,6 +86,7 @@ int run(const RecordCommand& command) {
   const SteadyUnixClock clock;
   RecordedMessage message;
   std::uint64_t recorded = 0;
+  std::map<std::string, SequenceTracker> orders;  // by topic
   bool good = true;
   Progress progress;
   progress.tell([&] { return command.file + ": waiting for messages"; });
@@ -91,6 +97,12 @@ int run(const RecordCommand& command) {
     message.payload = frames.payload.to_string();
     good = writer.write(message);
     recorded += good ? 1 : 0;
+    constexpr std::size_t kMostTopics = 10'000;  // a bound of memory: of any others nothing is told
+    const bool is_told = orders.size() < kMostTopics || orders.count(message.topic) > 0;
+    if (v1::Header header;
+        is_told && message.frame_count == 2 && header_of(message.payload, header)) {
+      orders[message.topic].take(header.epoch(), header.seq());
+    }
     progress.tell([&] { return command.file + ": " + counted(recorded, "message"); });
     return good && (command.count == 0 || recorded < command.count);
   });
@@ -103,6 +115,12 @@ int run(const RecordCommand& command) {
   std::cerr << command.file << ": " << counted(recorded, "message");
   if (recorded == 0) {
     std::cerr << ": nothing was heard on " << endpoint;
+  }
+  std::uint64_t missing = 0;
+  for (const auto& [topic, order] : orders) missing += order.missing();
+  if (missing > 0) {
+    std::cerr << "; " << counted(missing, "message")
+              << " missing between them, as their numbers show";
   }
   std::cerr << "\n";
   if (const std::string why = place.refusal(); !why.empty()) {

@@ -14,6 +14,7 @@
 #include "node/client/contact_publisher.h"
 #include "node/files/counted.h"
 #include "node/files/recording.h"
+#include "node/intake/sequence_tracker.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
@@ -44,6 +45,7 @@ struct ReplayCommand {
 struct TimedMessage {
   std::int64_t due_ns = 0;  ///< on the recording's clock
   std::string probe;
+  std::uint64_t lost_before = 0;  ///< messages of its probe
   v1::ContactBatch batch;
 };
 
@@ -63,6 +65,7 @@ class RecordedContacts {
     return has_first_ ? "" : path_ + ": no contact messages in it (record them with --contacts)";
   }
 
+  /// `message.lost_before`: how many of its probe's messages before it are not in the recording.
   bool next(TimedMessage& message) {
     if (!has_first_) {
       return read(message);
@@ -88,6 +91,17 @@ class RecordedContacts {
                    " messages left out: recorded as they came, they are no ContactBatch",
                kDone);
     }
+    if (missing_ > 0) {
+      complain(path_ + ": " + counted(missing_, "message") +
+                   " of the probes not in it, as their numbers show: missing in what is published "
+                   "too",
+               kDone);
+    }
+    if (out_of_order_ > 0) {
+      complain(path_ + ": " + counted(out_of_order_, "message") +
+                   " left out: not newer than one before, which a recognizer rejects",
+               kDone);
+    }
     return whole;
   }
 
@@ -103,8 +117,17 @@ class RecordedContacts {
         ++malformed_;
         continue;
       }
+      const v1::Header& header = message.batch.header();
+      SequenceTracker& order = orders_[std::string(topic->name)];
+      const std::uint64_t missing = order.missing();
+      if (!is_news(order.take(header.epoch(), header.seq()))) {
+        ++out_of_order_;
+        continue;
+      }
       message.due_ns = recorded_.received_ns;
       message.probe = topic->name;
+      message.lost_before = order.missing() - missing;
+      missing_ += message.lost_before;
       return true;
     }
     return false;
@@ -116,6 +139,9 @@ class RecordedContacts {
   TimedMessage first_;
   bool has_first_ = false;
   std::uint64_t malformed_ = 0;
+  std::map<std::string, SequenceTracker> orders_;  ///< by probe
+  std::uint64_t missing_ = 0;
+  std::uint64_t out_of_order_ = 0;
 };
 
 /// Batches of consecutive samples of one patch, due with their last one: by its stamp, or after so
@@ -137,7 +163,7 @@ Result<std::vector<TimedMessage>> from_csv(const ReplayCommand& command) {
       const std::string& probe = group.probes[run.context.probe];
       for (std::size_t i = 0; i < run.samples.size(); ++i) {
         if (i % command.batch_samples == 0) {
-          messages.push_back({0, probe, {}});
+          messages.push_back({0, probe, 0, {}});
           v1::ContactBatch& batch = messages.back().batch;
           batch.set_group(group.name);
           batch.set_object(group.object);
@@ -277,6 +303,11 @@ int run(const ReplayCommand& command) {
       const auto number =
           objects.try_emplace(message.batch.object(), first_object + objects.size());
       message.batch.set_object(number.first->second);
+    }
+    // The numbers are the publisher's own. (Beyond the largest gap they would be no gap to a
+    // recognizer but all that follows wrong.)
+    if (message.lost_before < SequenceTracker::kLargestGap) {
+      publisher.leave_out(message.probe, message.lost_before);
     }
     // At its own pace a recording does as its probes did, which wait for nobody. As fast as
     // possible it waits for room, but not for longer than for a recognizer to come.

@@ -4,12 +4,8 @@
 
 #include <algorithm>
 
-#include "palpate/v1/header.pb.h"
-
 namespace palpate {
-namespace {
 
-// Every message of the contract begins with its header, whatever else it is.
 bool header_of(std::string_view payload, v1::Header& header) {
   google::protobuf::io::CodedInputStream stream(
       reinterpret_cast<const std::uint8_t*>(payload.data()), static_cast<int>(payload.size()));
@@ -19,6 +15,8 @@ bool header_of(std::string_view payload, v1::Header& header) {
   stream.PushLimit(bytes);
   return header.ParseFromCodedStream(&stream);
 }
+
+namespace {
 
 double seconds(std::chrono::steady_clock::duration time) {
   return std::chrono::duration<double>(time).count();

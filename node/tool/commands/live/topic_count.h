@@ -5,7 +5,13 @@
 #include <cstdint>
 #include <string_view>
 
+#include "palpate/v1/header.pb.h"
+
 namespace palpate {
+
+/// The header, with which every message of the contract begins, whatever else it is. False if it
+/// has none.
+bool header_of(std::string_view payload, v1::Header& header);
 
 class TopicCount {
  public:
