@@ -188,7 +188,7 @@ void Gateway::log_changes() {
   v1::GatewayUpStatus up;
   up_->fill(up);
   if (up.lost() > told_.lost()) {
-    spdlog::error("{} messages lost, {} in all: the spool is full or cannot be written",
+    spdlog::error("{} messages lost, {} in all: the spool is full, damaged or cannot be written",
                   up.lost() - told_.lost(), up.lost());
   }
   if (up.missing() > told_.missing()) {

@@ -30,7 +30,8 @@ struct CommandLine {
   gateway::UpwardOptions up;
   std::string urls = "nats://127.0.0.1:4222";
   std::string from;
-  std::vector<std::string> carry{"contact", "recognition", "status"};
+  // Not "recognition": recognisers of the plant answer to the same subjects.
+  std::vector<std::string> carry{"contact", "status"};
   std::vector<std::string> take;
   std::string own_key;
   std::string node_key;
@@ -91,7 +92,9 @@ void add_options(CLI::App& app, CommandLine& line) {
           ->type_name("ENDPOINT");
   app.add_option("--cell", line.up.cell, "Up: the cell's name")->type_name("NAME");
   from->needs("--cell");
-  app.add_option("--carry", line.carry, "Up: what of contact, recognition, status")
+  app.add_option("--carry", line.carry,
+                 "Up: what of contact, recognition, status; recognition where no "
+                 "recogniser of the plant answers: their subjects are the same")
       ->check(CLI::IsMember({"contact", "recognition", "status"}))
       ->capture_default_str()
       ->type_name("KINDS");

@@ -9,6 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include <spdlog/spdlog.h>
+
 #include "node/process/clock.h"
 
 namespace palpate::gateway {
@@ -55,6 +57,14 @@ void Spool::take_up(const std::string& file) {
   if (reader.open(file).empty()) {
     RecordedMessage message;
     while (reader.next(message)) ++segment.messages;
+  }
+  // How many messages were there nobody can tell.
+  if (const std::uint64_t at_least = reader.damaged() + (reader.breaks_off() ? 1 : 0);
+      at_least > 0) {
+    lost_ += at_least;
+    spdlog::error("{}: damaged in {} places, {} bytes skipped{}: at least {} messages lost", file,
+                  reader.damaged(), reader.skipped_bytes(),
+                  reader.breaks_off() ? ", breaks off" : "", at_least);
   }
   std::error_code failed;
   segment.bytes = fs::file_size(file, failed);

@@ -50,7 +50,8 @@ class Spool {
 
   std::uint64_t size() const { return unread_; }
   std::uint64_t bytes() const { return bytes_; }
-  /// Messages lost because of the bound or because the disk could not be written.
+  /// Messages lost because of the bound, because the disk could not be written, or in places of an
+  /// earlier process's files that are damaged, each for one.
   std::uint64_t lost() const { return lost_; }
   /// The last error of the disk; empty if there was none.
   const std::string& error() const { return error_; }

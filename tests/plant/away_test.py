@@ -12,7 +12,8 @@ import time
 import unittest
 
 from bus import Bus, Probe, receive, stop, wait_for_log
-from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
+from plant import (EVERY_KIND, Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent,
+                   wait_for_stored)
 
 AWAY_S = float(os.environ.get("PALPATE_PLANT_AWAY_S", "6"))
 BATCHES_PER_OBJECT = 20
@@ -25,7 +26,7 @@ class Away(unittest.TestCase):
             servers.start().wait()
             bus.start_node()
             socket = bus.publisher(high_water_mark=100000)
-            gateway = carrier(bus, servers.url, "up", "press", bus.results)
+            gateway = carrier(bus, servers.url, "up", "press", bus.results, *EVERY_KIND)
             probes = [Probe(socket, f"finger.{i}", group="hand") for i in range(4)]
             with Client(servers.url) as client:
                 gateway_status(client, "press", "up")
@@ -45,7 +46,7 @@ class Away(unittest.TestCase):
             time.sleep(0.5)
             gateway.kill()
             gateway.wait()
-            gateway = carrier(bus, servers.url, "up", "press", bus.results)
+            gateway = carrier(bus, servers.url, "up", "press", bus.results, *EVERY_KIND)
             # What comes before it listens again is lost to the plant: so is what nobody hears.
             time.sleep(1.5)
             stroke(50)
@@ -93,7 +94,7 @@ class Away(unittest.TestCase):
             node = bus.start_node()
             socket = bus.publisher(high_water_mark=100000)
             planner = bus.subscriber("recognition/", high_water_mark=0)
-            gateway = carrier(bus, servers.url, "up", "press", bus.results, "--spool-bytes", bound)
+            gateway = carrier(bus, servers.url, "up", "press", bus.results, "--spool-bytes", bound, *EVERY_KIND)
             probe = Probe(socket)
             with Client(servers.url) as client:
                 gateway_status(client, "press", "up")

@@ -5,7 +5,8 @@ import unittest
 
 from bus import Bus, Probe, memory_kb, stop
 from palpate.v1 import contact_pb2, gateway_status_pb2
-from plant import (Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent, wait_for_stored)
+from plant import (EVERY_KIND, Client, Ledger, Servers, carrier, gateway_status, recogniser, skip_where_absent,
+                   wait_for_stored)
 
 HOSTILE = 3000
 MOST_GROWTH_KB = 64 * 1024
@@ -143,7 +144,7 @@ class Hostile(unittest.TestCase):
         with Bus() as bus, Servers(bus.folder) as servers:
             servers.start().wait()
             endpoint = f"ipc://{bus.folder}/contacts"
-            up = carrier(bus, servers.url, "up", "press", "bind:" + endpoint)
+            up = carrier(bus, servers.url, "up", "press", "bind:" + endpoint, *EVERY_KIND)
             with Client(servers.url) as client:
                 gateway_status(client, "press", "up")
                 socket = bus.publisher(high_water_mark=100000)

@@ -255,6 +255,10 @@ def recogniser(bus, url, name, places, *arguments):
     return start_gateway(bus, url, name, "--node", NODE, "--run-folder", folder, *taken, *arguments)
 
 
+# What a gateway can carry up; by default not the recognitions.
+EVERY_KIND = ("--carry", "contact", "--carry", "recognition", "--carry", "status")
+
+
 def carrier(bus, url, name, cell, endpoint, *arguments):
     """Starts a gateway that forwards a cell's messages to the plant."""
     return start_gateway(bus, url, name, "--from", endpoint, "--cell", cell, "--spool", bus.folder / f"{name}.spool",

@@ -111,6 +111,27 @@ TEST_F(SpoolTest, ARecordThatIsBrokenOffIsLeftOut) {
   EXPECT_TRUE(std::filesystem::exists(folder_ + "/stranger"));
 }
 
+TEST_F(SpoolTest, WhatIsDamagedIsCountedAsLost) {
+  std::string file;
+  {
+    Spool spool(folder_, kBound);
+    for (const std::string& number : numbers(0, 10)) spool.add("contact/f/", number);
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      if (entry.path().extension() == ".recording") file = entry.path().string();
+    }
+  }
+  {
+    std::fstream bytes(file, std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(static_cast<std::streamoff>(std::filesystem::file_size(file) / 2));
+    bytes.put('\xff');
+  }
+  Spool spool(folder_, kBound);
+  EXPECT_EQ(spool.lost(), 1U);
+  EXPECT_EQ(all_of(spool).size(), 9U);
+  EXPECT_EQ(spool.lost(), 1U);
+  EXPECT_EQ(files(), 0U);
+}
+
 TEST_F(SpoolTest, AFullDiskLeavesNoFileForEachMessage) {
   Spool spool(folder_, kBound);
   rlimit before{};
