@@ -18,6 +18,7 @@
 #include "node/process/clock.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
+#include "node/process/whole_number.h"
 #include "node/wire/key_flags.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
@@ -62,6 +63,7 @@ void add_options(CLI::App& app, CommandLine& options) {
   app.add_option(
          "--repeat", options.repeat,
          "Play all scenes so many times, each time a new object with new noise; 0 = for ever")
+      ->check(whole_number())
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--pause", options.pause_s, "Seconds between two scenes")
@@ -76,6 +78,7 @@ void add_options(CLI::App& app, CommandLine& options) {
   app.add_option("--object", options.object,
                  "Number of the first object; the others follow. Default: the scene's own, or else "
                  "one that was never used before (1 with --csv)")
+      ->check(whole_number())
       ->type_name("N");
   app.add_option(
          "--csv", options.csv,
@@ -163,7 +166,7 @@ struct Player {
 
   int export_csv(const std::vector<sim::Scene>& scenes) {
     ContactTable table;
-    for (std::uint64_t round = 0; round < std::max<std::uint64_t>(options.repeat, 1); ++round) {
+    for (std::uint64_t round = 0; round < options.repeat; ++round) {
       for (const sim::Scene& scene : scenes) {
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
@@ -253,6 +256,9 @@ int run(const CLI::App& app, const CommandLine& options) {
   std::string why = overwrites_output(written);
   for (const std::string& path : written) {
     if (why.empty()) why = overwrites_input(path, options.scenes);
+  }
+  if (why.empty() && options.repeat == 0 && !options.csv.empty()) {
+    why = "--repeat 0 is for ever, and --csv writes a file";
   }
   if (!why.empty()) {
     std::cerr << "palpate-sim: " << why << "\n";

@@ -189,6 +189,23 @@ class Tool(unittest.TestCase):
             self.assertEqual(code, 1)
             self.assertIn("no recognizer", err)
 
+    def test_what_is_no_number_of_objects_or_rounds_is_refused(self):
+        scene = SOURCE / "sim/scenes/circle.textproto"
+        with Bus() as bus:
+            file = bus.folder / "out.csv"
+            for option, value in (("--object", "-1"), ("--object", str(1 << 64)), ("--repeat", "-1"), ("--repeat", "1.5")):
+                code, _, err = run(SIM, scene, "--csv", file, option, value)
+                self.assertNotEqual(code, 0, (option, value))
+                self.assertIn(option, err)
+                self.assertIn(f'"{value}" is no whole number', err)
+            code, _, err = run(SIM, scene, "--csv", file, "--repeat", "0")
+            self.assertEqual(code, 2)
+            self.assertIn("--repeat 0 is for ever", err)
+            self.assertFalse(file.exists())
+            code, _, err = run(TOOL, "record", bus.folder / "x.rec", "--results", bus.results, "--count", "-1")
+            self.assertEqual(code, 2)
+            self.assertIn("--count", err)
+
     def test_check_tells_a_probes_author_what_is_wrong(self):
         with Bus() as bus:
             def check(rows):
