@@ -15,17 +15,23 @@ const Group::Member* Group::find_member(std::string_view probe) const {
 // When one probe of several announces a new object, the others' last messages of the old object are
 // still on their way. They must neither be mixed into the new object nor bring the old one back. So
 // an object begins only with a probe that changes its own number; any other probe waits until the
-// others are silent.
+// others are silent. So does one that was started anew and counts its objects from where it once
+// began.
 bool Group::is_stale_object(const ContactMessage& message, const Probe* probe,
                             SteadyTime now) const {
   if (members_.empty() || message.object == object_) return false;
   // In the order of each group alone, the probe's latest message may be another group's.
   const auto heard = heard_.find(message.probe);
-  const bool announces_change = heard != heard_.end()
-                                    ? heard->second.object != message.object
-                                    : probe != nullptr && probe->object && probe->group == name_ &&
-                                          *probe->object != message.object;
-  if (announces_change) return false;
+  const bool is_known =
+      heard != heard_.end() || (probe != nullptr && probe->object && probe->group == name_);
+  const std::uint64_t before = heard != heard_.end() ? heard->second.object
+                               : is_known            ? *probe->object
+                                                     : message.object;
+  const std::uint64_t epoch = heard != heard_.end() ? heard->second.sequence.epoch()
+                              : is_known            ? probe->sequence.epoch()
+                                                    : message.epoch;
+  const bool counts_anew = epoch != message.epoch && message.object < object_;
+  if (before != message.object && !counts_anew) return false;
   return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
     return member.probe != message.probe && now - member.last_taken <= options_.object_takeover;
   });

@@ -189,6 +189,19 @@ TEST_F(IntakeTest, ARestartedProbeGoesOnWithItsObject) {
   EXPECT_EQ(recognized_samples("cup"), 80U);
 }
 
+TEST_F(IntakeTest, AProbeThatIsStartedAnewDoesNotBringAnOldObjectBack) {
+  EXPECT_EQ(give("a", in_group("cup", 1, line_batch("a", 1, 0))), kTaken);
+  EXPECT_EQ(give("b", in_group("cup", 1, line_batch("b", 1, 0))), kTaken);
+  EXPECT_EQ(give("a", in_group("cup", 2, line_batch("a", 1, 1))), kTaken);
+  EXPECT_EQ(give("b", in_group("cup", 2, line_batch("b", 1, 1))), kTaken);
+  // It counts its objects from 1 again.
+  EXPECT_EQ(give("b", in_group("cup", 1, line_batch("b", 2, 0))), v1::REJECT_REASON_STALE_OBJECT);
+  EXPECT_EQ(give("a", in_group("cup", 2, line_batch("a", 1, 2))), kTaken);
+  // A new object may begin with a restart.
+  EXPECT_EQ(give("b", in_group("cup", 3, line_batch("b", 3, 0))), kTaken);
+  EXPECT_EQ(give("a", in_group("cup", 3, line_batch("a", 1, 3))), kTaken);
+}
+
 TEST_F(IntakeTest, StragglersOfTheOldObjectNeitherMixNorReturn) {
   give("a", in_group("cup", 1, line_batch("a", 1, 0, 50)));
   give("b", in_group("cup", 1, line_batch("b", 1, 0, 50, 1.0)));
