@@ -1,5 +1,6 @@
 #include "node/groups/intake.h"
 
+#include <chrono>
 #include <utility>
 
 #include "node/security/decode_from.h"
@@ -26,6 +27,15 @@ std::int64_t latency_between(std::int64_t sent_ns, std::int64_t received_ns) {
 bool is_news_to(const Group* group, const ContactMessage& message) {
   const SequenceTracker* sequence = group == nullptr ? nullptr : group->sequence_of(message.probe);
   return sequence == nullptr || is_news(sequence->judge(message.epoch, message.seq));
+}
+
+/// Old connections drain within seconds. What comes of a former epoch when the present one has been
+/// silent for longer is of a probe whose name another process had, for one message at least.
+constexpr std::chrono::seconds kDrained{10};
+
+bool is_back(const Probe& probe, const ContactMessage& message, SteadyTime now) {
+  return now - probe.last_heard > kDrained &&
+         probe.sequence.judge(message.epoch, message.seq) == SequenceEvent::StaleEpoch;
 }
 
 }  // namespace
@@ -79,6 +89,9 @@ RejectReason Intake::take(std::size_t frame_count, std::string_view topic, std::
   Group* group = nullptr;
   if (reason == v1::REJECT_REASON_UNSPECIFIED) {
     group = groups_.find(message.group);
+    if (!sequence_by_group_ && probe != nullptr && is_back(*probe, message, now)) {
+      probe->sequence.readmit(message.epoch);
+    }
     reason = judge(probe, group, now);
   }
   if (reason != v1::REJECT_REASON_UNSPECIFIED) {

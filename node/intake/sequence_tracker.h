@@ -66,6 +66,15 @@ class SequenceTracker {
     return event;
   }
 
+  /// Takes a former epoch back, in place of the present one: its next message is a first one.
+  void readmit(std::uint64_t epoch) {
+    retire(epoch_);
+    for (std::size_t i = 0; i < retired_count_; ++i) {
+      if (retired_[i] == epoch) retired_[i] = epoch_;
+    }
+    started_ = false;
+  }
+
   std::uint64_t epoch() const { return epoch_; }
   std::uint64_t seq() const { return seq_; }
   std::uint64_t gaps() const { return gaps_; }          ///< number of gaps

@@ -189,6 +189,20 @@ TEST_F(IntakeTest, ARestartedProbeGoesOnWithItsObject) {
   EXPECT_EQ(recognized_samples("cup"), 80U);
 }
 
+TEST_F(IntakeTest, AProbeIsHeardAgainAfterAStrayMessageUnderItsName) {
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 1, 40))), kTaken);
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 2, 0))), kTaken);  // the stray one
+  for (int i = 0; i < 10; ++i) {
+    EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 1, 41 + i))),
+              v1::REJECT_REASON_STALE_EPOCH);
+    now_ += milliseconds(1000);
+  }
+  now_ += milliseconds(1);
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 1, 51))), kTaken);
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 1, 52))), kTaken);
+  EXPECT_EQ(give("p", in_group("cup", 1, line_batch("p", 2, 1))), v1::REJECT_REASON_STALE_EPOCH);
+}
+
 TEST_F(IntakeTest, AProbeThatIsStartedAnewDoesNotBringAnOldObjectBack) {
   EXPECT_EQ(give("a", in_group("cup", 1, line_batch("a", 1, 0))), kTaken);
   EXPECT_EQ(give("b", in_group("cup", 1, line_batch("b", 1, 0))), kTaken);
