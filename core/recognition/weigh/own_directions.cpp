@@ -9,6 +9,7 @@
 
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
+#include "core/recognition/weigh/tip_directions.h"
 
 namespace palpate {
 namespace {
@@ -71,10 +72,12 @@ FitData surface_along(const ClassFit& beside, int side, const Tips& tips) {
   for (std::size_t p = 0; p < surface.patches.size(); ++p) {
     for (; section != tips.smooth.sections.end() && section->begin < surface.patches[p].end;
          ++section) {
-      for (std::size_t i = section->begin; section->kept && i < section->end; ++i) {
+      for (std::size_t i = section->begin; i < section->end; ++i) {
         const FitPoint& centre = tips.centres.points[i];
-        const Vec2 normal = normal_at(beside, tips.centres, i);
-        if (centre.offset > 0.0 && normal.allFinite()) {
+        if (!(centre.offset > 0.0) || !(section->kept || is_swayed(centre))) {
+          continue;
+        }
+        if (const Vec2 normal = normal_at(beside, tips.centres, i); normal.allFinite()) {
           surface.points[i].position = centre.position - side * centre.offset * normal;
           surface.points[i].tangent = -(side * tips.sides[p]) * left_of(normal);
         }

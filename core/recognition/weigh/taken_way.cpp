@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -105,13 +106,23 @@ void take_most_probable(const SideContext& by, SidedFits* sided) {
 }
 
 void take_own_directions(const SideContext& by, SidedFits* sided) {
+  constexpr unsigned kConics = class_bit(CurveClass::Circle) | class_bit(CurveClass::Ellipse) |
+                               class_bit(CurveClass::Hyperbola);
   const SmoothModel& smooth = by.arcs.smooth;
   SideChoice& choice = sided->choices[sided->taken];
-  if (has_kept_tips(smooth) && choice.settled && !has_lone_tips(choice.reduced, smooth) &&
-      by.work.allows()) {
-    choice.fits = along_own_directions(std::move(choice.fits), choice.reduced, choice.sides, smooth,
-                                       {}, by.work);
+  const bool are_swayed = has_swayed_tips(smooth);
+  if (!(has_kept_tips(smooth) || are_swayed) || !choice.settled ||
+      has_lone_tips(choice.reduced, smooth) || !by.work.allows()) {
+    return;
   }
+  // Surface points along swayed directions may have led a conic far off; of centres it is sought
+  // without a search.
+  std::optional<ClassFits> of_centres;
+  if (are_swayed) {
+    of_centres = fit_classes(smooth.reduced, by.work, nullptr, by.classes & kConics);
+  }
+  choice.fits = along_own_directions(std::move(choice.fits), choice.reduced, choice.sides, smooth,
+                                     {of_centres ? &*of_centres : nullptr, nullptr}, by.work);
 }
 
 }  // namespace palpate

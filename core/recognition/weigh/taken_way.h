@@ -10,8 +10,8 @@ namespace palpate {
 void take_most_probable(const SideContext& by, SidedFits* sided);
 
 /// Takes the classes of the way that is taken to where each has the tips' centres itself: samples
-/// that show no direction have that of the curve which led, and another class may turn otherwise
-/// between the others. (Of tips that touch alone every way has it so.)
+/// that show no direction, or one that noise sways, have that of the curve which led, and another
+/// class may turn otherwise between the others. (Of tips that touch alone every way has it so.)
 void take_own_directions(const SideContext& by, SidedFits* sided);
 
 }  // namespace palpate

@@ -152,6 +152,15 @@ bool has_kept_tips(const SmoothModel& smooth) {
   });
 }
 
+bool is_swayed(const FitPoint& centre) {
+  const double most = kNegligibleDeviations * centre.tangent_sigma;
+  return 0.5 * most * most * centre.offset * centre.inverse_sigma > 1.0;
+}
+
+bool has_swayed_tips(const SmoothModel& smooth) {
+  return std::any_of(smooth.reduced.points.begin(), smooth.reduced.points.end(), is_swayed);
+}
+
 bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides) {
   for (std::size_t p = 0; p < smooth.reduced.patches.size(); ++p) {
     const auto patch = smooth.reduced.patch(p);

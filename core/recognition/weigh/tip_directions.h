@@ -17,6 +17,13 @@ bool has_kept_tips(const SmoothModel& smooth);
 /// True if any of these has no known direction (StoredPatch::direction).
 bool has_untold_tips(const SmoothModel& smooth);
 
+/// Whether noise sways the direction of a tip's centre by so much that the tip, taken off along it,
+/// may miss the surface by more than the noise of the point.
+bool is_swayed(const FitPoint& centre);
+
+/// True if any tip's centre is.
+bool has_swayed_tips(const SmoothModel& smooth);
+
 /// True if any patch of tip centres has neither a known side (`sides`, one per patch, else 0) nor a
 /// significant bend (certain_turn) nor a known direction.
 bool has_uncertain_bends(const SmoothModel& smooth, std::span<const int> sides);
