@@ -16,9 +16,9 @@
 #include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
 #include "node/process/clock.h"
+#include "node/process/number_checks.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
-#include "node/process/whole_number.h"
 #include "node/wire/key_flags.h"
 #include "sim/contact_export.h"
 #include "sim/contacts.h"
@@ -56,29 +56,29 @@ void add_options(CLI::App& app, CommandLine& options) {
       ->capture_default_str()
       ->type_name("ENDPOINT");
   app.add_option("--speed", options.speed, "Times as fast as the scene's own time")
-      ->check(CLI::PositiveNumber)
+      ->check(positive_number())
       ->capture_default_str()
       ->type_name("FACTOR");
   app.add_flag("--fast", options.fast, "As fast as possible");
   app.add_option(
          "--repeat", options.repeat,
          "Play all scenes so many times, each time a new object with new noise; 0 = for ever")
-      ->check(whole_number())
+      ->check(counting_number())
       ->capture_default_str()
       ->type_name("N");
   app.add_option("--pause", options.pause_s, "Seconds between two scenes")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   app.add_option("--wait", options.wait_s,
                  "Seconds to wait for a recognizer, or with --fast for room, before giving up")
-      ->check(CLI::Range(0.0, 1e6))
+      ->check(seconds_to_wait())
       ->capture_default_str()
       ->type_name("S");
   app.add_option("--object", options.object,
                  "Number of the first object; the others follow. Default: the scene's own, or else "
                  "one that was never used before (1 with --csv)")
-      ->check(whole_number())
+      ->check(counting_number())
       ->type_name("N");
   app.add_option(
          "--csv", options.csv,

@@ -158,7 +158,14 @@ void Gateway::tell(SteadyTime now) {
   for (auto& [cell, is_made] : cells_) {
     if (is_made) continue;
     make_streams(plant_, this, cell, options_.streams,
-                 [&made = is_made](bool all_there) { made = all_there; });
+                 [this, &made = is_made](const std::string& error) {
+                   made = error.empty();
+                   if (error == stream_error_told_) return;
+                   stream_error_told_ = error;
+                   if (!error.empty()) {
+                     spdlog::error("a stream cannot be made: {}", printable(error));
+                   }
+                 });
   }
   publish_status();
 }

@@ -60,6 +60,7 @@ class Gateway {
   v1::GatewayStatus status_;
   v1::GatewayUpStatus told_;
   std::string disk_error_told_;
+  std::string stream_error_told_;
   std::uint64_t dropped_told_ = 0;
   SteadyTime next_word_;
   SteadyTime next_status_;

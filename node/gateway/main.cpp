@@ -6,7 +6,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -14,6 +16,7 @@
 #include "node/client/connection.h"
 #include "node/gateway/gateway.h"
 #include "node/process/log_sink.h"
+#include "node/process/number_checks.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/process/stop_signals.h"
 #include "node/wire/key_flags.h"
@@ -63,16 +66,17 @@ void add_plant_options(CLI::App& app, CommandLine& line) {
       ->type_name("N");
   app.add_option("--contacts-max-age-h", streams.contacts_max_age_h,
                  "Of streams that it makes: contacts are kept so long; 0 = for ever [h]")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_within(0.0, 1e6))
       ->capture_default_str()
       ->type_name("HOURS");
   app.add_option("--max-bytes", streams.max_bytes,
                  "Of streams that it makes: size of each, the oldest go; -1 = no limit [bytes]")
+      ->check(CLI::Range(std::int64_t{-1}, std::numeric_limits<std::int64_t>::max()))
       ->capture_default_str()
       ->type_name("BYTES");
   app.add_option("--duplicate-window-s", streams.duplicate_window_s,
                  "Of streams that it makes: what comes twice within it is stored once [s]")
-      ->check(CLI::PositiveNumber)
+      ->check(number_within(1e-3, 1e9))
       ->capture_default_str()
       ->type_name("S");
 }

@@ -1,11 +1,9 @@
 // palpate: the command-line tool. Each subcommand has a file <name>_command.cpp under commands/.
 #include <CLI/CLI.hpp>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <sstream>
 #include <string>
 
 #include "core/curves/curve_class.h"
@@ -20,28 +18,6 @@ namespace palpate {
 int complain(const std::string& why, int exit_code) {
   std::cerr << "palpate: " << printable_path(why) << "\n";
   return exit_code;
-}
-
-CLI::Validator positive_number() {
-  const auto check = [](const std::string& text) -> std::string {
-    double value = 0.0;
-    const bool good = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
-    return good ? "" : "\"" + text + "\" is no finite number > 0";
-  };
-  return CLI::Validator(check, "POSITIVE");
-}
-
-CLI::Validator number_within(double lowest, double highest) {
-  std::ostringstream bounds;
-  bounds << lowest << " to " << highest;
-  std::ostringstream name;  // as CLI::Range has it, which the manual pages read
-  name << "FLOAT in [" << lowest << " - " << highest << "]";
-  const auto check = [lowest, highest, why = bounds.str()](const std::string& text) -> std::string {
-    double value = 0.0;
-    const bool good = CLI::detail::lexical_cast(text, value) && value >= lowest && value <= highest;
-    return good ? "" : "\"" + text + "\" is no number from " + why;
-  };
-  return CLI::Validator(check, name.str());
 }
 
 CLI::Validator curve_class_name() {

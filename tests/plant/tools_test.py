@@ -11,6 +11,23 @@ from plant import (GATEWAY, SERVER, Client, Ledger, Servers, carrier, gateway_st
 from programs import SOURCE, TOOL, run
 
 
+class Causes(unittest.TestCase):
+    def said(self, gateway, words):
+        deadline = time.monotonic() + 10
+        while words not in gateway.log_path.read_text():
+            self.assertLess(time.monotonic(), deadline, gateway.log_path.read_text())
+            time.sleep(0.1)
+
+    def test_why_a_place_begins_anew_is_said(self):
+        with Bus() as bus, Servers(bus.folder) as servers:
+            servers.start().wait()
+            missing = recogniser(bus, servers.url, "missing", ["press"], "--node", "/no/such/node")
+            self.said(missing, "its node cannot be started: /no/such/node")
+            alone = recogniser(bus, servers.url, "alone", ["mill"], "--replicas", "3")
+            self.said(alone, "a stream cannot be made: palpate-mill-")
+            self.said(alone, "replicas > 1 not supported")
+
+
 class Tools(unittest.TestCase):
     def test_they_see_the_recognisers_node_as_any_other(self):
         with Bus() as bus, Servers(bus.folder) as servers:

@@ -252,7 +252,8 @@ def recogniser(bus, url, name, places, *arguments):
     folder = bus.folder / name
     folder.mkdir(exist_ok=True)
     taken = [word for place in places for word in ("--take", place)]
-    return start_gateway(bus, url, name, "--node", NODE, "--run-folder", folder, *taken, *arguments)
+    node = () if "--node" in arguments else ("--node", NODE)
+    return start_gateway(bus, url, name, *node, "--run-folder", folder, *taken, *arguments)
 
 
 # What a gateway can carry up; by default not the recognitions.

@@ -27,11 +27,15 @@ SocketSettings unbounded() {
   return settings;
 }
 
+/// Exit code of a child that could not become the node, as of a shell.
+constexpr int kNotStarted = 127;
+
 }  // namespace
 
 FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const std::string& name)
     : contacts_path_(options.folder + "/" + name + ".contacts"),
       results_path_(options.folder + "/" + name + ".results"),
+      program_(options.program),
       contacts_(make_socket(context, zmq::socket_type::xpub, unbounded())),
       results_(make_socket(context, zmq::socket_type::sub, unbounded())) {
   std::vector<std::string> arguments{options.program,
@@ -89,7 +93,7 @@ FedNode::FedNode(zmq::context_t& context, const FedNodeOptions& options, const s
     sigemptyset(&none);
     ::sigprocmask(SIG_SETMASK, &none, nullptr);
     ::execvp(pointers.front(), pointers.data());
-    ::_exit(127);
+    ::_exit(kNotStarted);
   }
 }
 
@@ -112,9 +116,19 @@ bool FedNode::is_ready(bool heard) {
   return is_heard_ && heard;
 }
 
-bool FedNode::has_ended() {
-  if (process_ > 0 && ::waitpid(process_, nullptr, WNOHANG) == process_) process_ = -1;
-  return process_ < 0;
+const std::string& FedNode::how_ended() {
+  int status = 0;
+  if (process_ > 0 && ::waitpid(process_, &status, WNOHANG) == process_) {
+    process_ = -1;
+    if (WIFSIGNALED(status)) {
+      end_ = "was ended by signal " + std::to_string(WTERMSIG(status));
+    } else if (WEXITSTATUS(status) == kNotStarted) {
+      end_ = "cannot be started: " + program_;
+    } else {
+      end_ = "has ended with exit code " + std::to_string(WEXITSTATUS(status));
+    }
+  }
+  return end_;
 }
 
 void FedNode::send(std::string_view topic, std::string_view payload) {

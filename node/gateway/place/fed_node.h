@@ -38,8 +38,8 @@ class FedNode {
   /// has been received.
   bool is_ready(bool heard);
 
-  /// True if the node's process has ended.
-  bool has_ended();
+  /// How the node's process has ended, to follow "its node "; empty while it runs.
+  const std::string& how_ended();
 
   /// Nothing is lost: our queue has no bound, but GroupFeed bounds what can be in it.
   void send(std::string_view topic, std::string_view payload);
@@ -51,7 +51,9 @@ class FedNode {
  private:
   std::string contacts_path_;
   std::string results_path_;
+  std::string program_;
   pid_t process_ = -1;
+  std::string end_;
   zmq::socket_t contacts_;
   zmq::socket_t results_;
   bool is_heard_ = false;

@@ -49,7 +49,9 @@ void NodeFeed::serve(SteadyTime now) {
   // (Handling a message may forget everything.)
   while (node_ && node_->receive(message)) hear(message);
   if (!node_) return;
-  if (node_->has_ended()) return events_.failed("its node has ended");
+  if (const std::string& how = node_->how_ended(); !how.empty()) {
+    return events_.failed("its node " + how);
+  }
   if (now - heard_ > kNodeSilence) return events_.failed("its node says nothing");
   if (node_->is_ready(has_spoken_)) give();
 }

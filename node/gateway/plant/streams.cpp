@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace palpate::gateway {
@@ -48,7 +49,7 @@ std::string recognition_stream(std::string_view cell) { return stream(cell, "rec
 std::string status_stream(std::string_view cell) { return stream(cell, "status"); }
 
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
-                  const StreamLimits& limits, const std::function<void(bool)>& done) {
+                  const StreamLimits& limits, const std::function<void(const std::string&)>& done) {
   json contacts = common(contact_stream(cell), {make_subject(cell, "contact") + ".>"}, limits);
   constexpr double kSecondsPerHour = 3600.0;
   contacts["max_age"] = static_cast<std::int64_t>(limits.contacts_max_age_h * kSecondsPerHour *
@@ -62,18 +63,21 @@ void make_streams(Plant& plant, const void* owner, const std::string& cell,
   status["max_msgs_per_subject"] = kStatusMessages;
   struct Count {
     int left = 3;
-    bool all_there = true;
+    std::string error;
   };
   const auto count = std::make_shared<Count>();
   for (const json& config : {contacts, recognitions, status}) {
     plant.api(owner, "STREAM.CREATE." + config["name"].get<std::string>(), config,
-              [count, done](const json* answer) {
-                bool is_there = answer != nullptr;
-                if (is_there && answer->contains("error")) {
-                  is_there = (*answer)["error"].value("err_code", 0) == kExistsOtherwise;
+              [count, done, name = config["name"].get<std::string>()](const json* answer) {
+                if (answer == nullptr) {
+                  count->error = name + ": no answer";
+                } else if (answer->contains("error")) {
+                  const json& error = (*answer)["error"];
+                  if (error.value("err_code", 0) != kExistsOtherwise) {
+                    count->error = name + ": " + error.value("description", "refused");
+                  }
                 }
-                count->all_there = count->all_there && is_there;
-                if (--count->left == 0) done(count->all_there);
+                if (--count->left == 0) done(count->error);
               });
   }
 }

@@ -25,9 +25,10 @@ std::string contact_stream(std::string_view cell);
 std::string recognition_stream(std::string_view cell);
 std::string status_stream(std::string_view cell);
 
-/// Creates the three streams. Calls done(true) if they exist then.
+/// Creates the three streams. Calls done with what the engine says against it; empty if they exist
+/// then.
 void make_streams(Plant& plant, const void* owner, const std::string& cell,
-                  const StreamLimits& limits, const std::function<void(bool)>& done);
+                  const StreamLimits& limits, const std::function<void(const std::string&)>& done);
 
 /// Asks for the last answer of a group. The message has status 404 if there is none.
 void read_last_answer(Plant& plant, const void* owner, std::string_view cell,

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "node/process/number_checks.h"
 #include "node/wire/key_flags.h"
 #include "node/wire/socket.h"
 
@@ -25,14 +26,6 @@ void add_record_command(CLI::App& app, int& exit_code);
 void add_replay_command(CLI::App& app, int& exit_code);
 void add_view_command(CLI::App& app, int& exit_code);
 void add_watch_command(CLI::App& app, int& exit_code);
-
-/// For options: finite numbers above 0, or within bounds. CLI11's own checks let
-/// a NaN pass.
-CLI::Validator positive_number();
-CLI::Validator number_within(double lowest, double highest);
-
-/// For options: seconds to wait, at most eleven days: what is more is a mistake.
-inline CLI::Validator seconds_to_wait() { return number_within(0.0, 1e6); }
 
 /// For options: a class that a curve can be of; the error lists them.
 CLI::Validator curve_class_name();

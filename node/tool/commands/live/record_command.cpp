@@ -12,7 +12,6 @@
 #include "node/intake/sequence_tracker.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
-#include "node/process/whole_number.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/listening_place.h"
 #include "node/tool/commands/live/topic_count.h"
@@ -162,7 +161,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
       ->capture_default_str()
       ->type_name("S");
   command->add_option("--count", record->count, "Record so many messages; 0 = any number")
-      ->check(whole_number())
+      ->check(counting_number())
       ->capture_default_str()
       ->type_name("N");
   command->callback([record, &exit_code] { exit_code = run(*record); });

@@ -16,7 +16,6 @@
 #include "node/files/quantity.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
-#include "node/process/whole_number.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/drawing/terminal_plot.h"
 #include "node/tool/text/message_json.h"
@@ -347,7 +346,7 @@ void add_watch_command(CLI::App& app, int& exit_code) {
                     "On a terminal, under the table: a small picture of what was touched last, in "
                     "braille dots");
   command->add_option("--count", watch->count, "End after so many recognitions; 0 = never")
-      ->check(whole_number())
+      ->check(counting_number())
       ->capture_default_str()
       ->type_name("N");
   command
