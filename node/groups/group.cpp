@@ -22,16 +22,13 @@ bool Group::is_stale_object(const ContactMessage& message, const Probe* probe,
   if (members_.empty() || message.object == object_) return false;
   // In the order of each group alone, the probe's latest message may be another group's.
   const auto heard = heard_.find(message.probe);
-  const bool is_known =
-      heard != heard_.end() || (probe != nullptr && probe->object && probe->group == name_);
-  const std::uint64_t before = heard != heard_.end() ? heard->second.object
-                               : is_known            ? *probe->object
-                                                     : message.object;
-  const std::uint64_t epoch = heard != heard_.end() ? heard->second.sequence.epoch()
-                              : is_known            ? probe->sequence.epoch()
-                                                    : message.epoch;
-  const bool counts_anew = epoch != message.epoch && message.object < object_;
-  if (before != message.object && !counts_anew) return false;
+  const bool was_here = heard != heard_.end();
+  if (was_here || (probe != nullptr && probe->object && probe->group == name_)) {
+    const std::uint64_t before = was_here ? heard->second.object : *probe->object;
+    const SequenceTracker& sequence = was_here ? heard->second.sequence : probe->sequence;
+    const bool counts_anew = sequence.epoch() != message.epoch && message.object < object_;
+    if (before != message.object && !counts_anew) return false;
+  }
   return std::any_of(members_.begin(), members_.end(), [&](const Member& member) {
     return member.probe != message.probe && now - member.last_taken <= options_.object_takeover;
   });
