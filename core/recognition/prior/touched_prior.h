@@ -20,7 +20,7 @@ double expected_log_length(CurveClass curve_class, const TouchedVector& z);
 double log_length_over_size(CurveClass curve_class);
 
 /// The hyperbola's prior, half and half: touched about its tip, the size that of its bend; and a
-/// wedge with a rounded edge, the size half the distance c of its foci, any b^2 / c^2, and
+/// wedge with a rounded edge, the size half the distance c of its foci, b^2 / c^2 uniform, and
 /// places on its arms by y / b.
 enum class HyperbolaHalf { Tip, Wedge };
 

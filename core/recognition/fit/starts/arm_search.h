@@ -12,7 +12,6 @@
 
 #include "core/numerics/work_budget.h"
 #include "core/recognition/fit/starts/axis_fit.h"
-#include "core/recognition/fit/starts/farthest_first.h"
 #include "core/recognition/fit/starts/polynomial_seeds.h"
 #include "core/recognition/fit/starts/seed_moments.h"
 #include "core/recognition/samples/fit_data.h"
@@ -69,13 +68,7 @@ class ArmSearch {
     any_lone_ = std::any_of(patches.begin(), patches.end(),
                             [](const PatchSpan& patch) { return patch.size() == 1; });
     settles_arms_ = are_few_touches(points, patches);
-    for (auto begin = order_.begin(); begin != order_.end();) {
-      const auto end = std::find_if(begin, order_.end(), [&](std::size_t p) {
-        return patches[p].size() != patches[*begin].size();
-      });
-      spread_first(std::span(begin, end));
-      begin = end;
-    }
+    spread_first();
   }
 
   /// Costs with the best arms for one direction and each vertex of kVertexDistances.
@@ -135,27 +128,40 @@ class ArmSearch {
   /// A spline is a semi-cubical parabola and a linear term.
   static constexpr std::array<std::size_t, 4> kPowersOfT = {0, 2, 3, 1};
 
-  /// Patches as long as one another say most of the curve, in fours, where they lie far apart.
-  void spread_first(std::span<std::size_t> alike) const {
-    const std::vector<std::size_t> patches(alike.begin(), alike.end());
-    if (patches.size() <= kMostEnumerated || patches_[patches.front()].size() == 0) {
+  /// Of `order_`, longest first, the first kMostEnumerated: patches that differ by less than twice
+  /// in length say most of the curve where they lie far apart, and from longer ones. (By their
+  /// order and length, four strokes of one arm had come first, and the only one of the other last.)
+  void spread_first() {
+    if (order_.size() <= kMostEnumerated) {
       return;
     }
-    std::vector<Vec2> places;
-    places.reserve(patches.size());
-    for (const std::size_t p : patches) {
-      places.push_back(points_[patches_[p].begin + patches_[p].size() / 2].position);
+    const auto place_of = [&](std::size_t p) {
+      const PatchSpan& patch = patches_[p];
+      return points_[patch.begin + patch.size() / 2].position;
+    };
+    Vec2 middle = Vec2::Zero();
+    for (const FitPoint& point : points_) {
+      middle += point.position / static_cast<double>(points_.size());
     }
-    std::vector<bool> first(patches.size(), false);
-    auto next = alike.begin();
-    for (const std::size_t k : farthest_first(places, kMostEnumerated)) {
-      first[k] = true;
-      *next++ = patches[k];
-    }
-    for (std::size_t k = 0; k < patches.size(); ++k) {
-      if (!first[k]) {
-        *next++ = patches[k];
+    for (std::size_t k = 0; k < kMostEnumerated; ++k) {
+      const std::size_t size = patches_[order_[k]].size();
+      if (size == 0) {
+        return;
       }
+      const auto alike = std::find_if(order_.begin() + static_cast<std::ptrdiff_t>(k), order_.end(),
+                                      [&](std::size_t p) { return 2 * patches_[p].size() < size; });
+      const auto distance = [&](std::size_t p) {
+        double least =
+            k == 0 ? (place_of(p) - middle).squaredNorm() : std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < k; ++j) {
+          least = std::min(least, (place_of(p) - place_of(order_[j])).squaredNorm());
+        }
+        return least;
+      };
+      const auto next = order_.begin() + static_cast<std::ptrdiff_t>(k);
+      const auto farthest = std::max_element(
+          next, alike, [&](std::size_t a, std::size_t b) { return distance(a) < distance(b); });
+      std::rotate(next, farthest, farthest + 1);
     }
   }
 
