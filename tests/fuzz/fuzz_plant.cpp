@@ -50,6 +50,7 @@ void take_spool(std::string_view text) {
       << "palpate2" << text;
   {
     gateway::Spool spool(folder, 1 << 16);
+    const std::uint64_t damaged = spool.lost();  // of which nobody knows how many they were
     const std::uint64_t size = spool.size();
     spool.add("contact/f/", "new");
     std::uint64_t taken = 0;
@@ -57,7 +58,7 @@ void take_spool(std::string_view text) {
       ++taken;
       spool.release(one->segment);
     }
-    if (taken + spool.lost() != size + 1 || !spool.empty()) std::abort();
+    if (taken + spool.lost() - damaged != size + 1 || !spool.empty()) std::abort();
   }
   std::filesystem::remove_all(folder);
 }
