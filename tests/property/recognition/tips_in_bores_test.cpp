@@ -12,6 +12,7 @@
 #include "core/curves/pose2.h"
 #include "core/recognition/recognizer.h"
 #include "tests/support/most_of_poisson.h"
+#include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -138,12 +139,8 @@ TEST(TipsInBores, OfShortStrokesAreTakenOffAlongEveryClasssOwnDirections) {
   double expected_wrong = 0.0;
   for (int i = 0; i < scenes; ++i) {
     const Recognition answer = recognised_by_short_strokes(rng);
-    double probability = 0.0;
-    for (const Hypothesis& hypothesis : answer.hypotheses) {
-      probability +=
-          hypothesis.shape.curve_class == CurveClass::Circle ? hypothesis.probability : 0.0;
-    }
-    improbable += probability < kImprobable ? 1 : 0;
+    const Hypothesis* const circle = test::hypothesis_of(answer, CurveClass::Circle);
+    improbable += circle == nullptr || circle->probability < kImprobable ? 1 : 0;
     if (answer.status == RecognitionStatus::Recognized) {
       wrong += answer.shape.curve_class == CurveClass::Circle ? 0 : 1;
       expected_wrong += 1.0 - answer.hypotheses.front().probability;

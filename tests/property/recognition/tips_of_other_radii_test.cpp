@@ -18,6 +18,7 @@
 #include "tests/support/answered_touches.h"
 #include "tests/support/most_of_poisson.h"
 #include "tests/support/random_scene.h"
+#include "tests/support/scene_data.h"
 #include "tests/support/test_rng.h"
 
 namespace palpate {
@@ -80,11 +81,8 @@ TEST(TipsOfOtherRadii, AreOnOneSideOfThePart) {
         continue;
       }
       ++scenes;
-      double probability = 0.0;
-      for (const Hypothesis& hypothesis : answer->hypotheses) {
-        probability += hypothesis.shape.curve_class == curve_class ? hypothesis.probability : 0.0;
-      }
-      improbable += probability < kImprobable ? 1 : 0;
+      const Hypothesis* const truth = test::hypothesis_of(*answer, curve_class);
+      improbable += truth == nullptr || truth->probability < kImprobable ? 1 : 0;
       if (answer->status == RecognitionStatus::Recognized) {
         (answer->shape.curve_class == curve_class ? recognized : wrong) += 1;
         stated_wrong += test::stated_doubt(*answer);
