@@ -129,11 +129,6 @@ class TriedWays {
     }
   }
 
-  bool any_fits_all() const {
-    return std::any_of(choices_.begin(), choices_.end(),
-                       [&](const SideChoice& choice) { return fits_all(choice, by_); });
-  }
-
   /// The choice where no tips are to be removed.
   SideChoice without_tips() const {
     SideChoice choice;
@@ -149,6 +144,11 @@ class TriedWays {
   std::vector<SideChoice> take() && { return std::move(choices_); }
 
  private:
+  bool any_fits_all() const {
+    return std::any_of(choices_.begin(), choices_.end(),
+                       [&](const SideChoice& choice) { return fits_all(choice, by_); });
+  }
+
   /// Whether any patch states its side: the others touch the same wall of a conic from there.
   bool any_side_is_known() const {
     const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);
@@ -301,9 +301,7 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   if (may_turn && !turn_first && by.work.allows() && !any_that(tells_sides)) {
     tried.try_along_centres();
   }
-  if (!tried.any_fits_all()) {
-    tried.try_straight_strokes_otherwise();
-  }
+  tried.try_straight_strokes_otherwise();
   sided.choices = std::move(tried).take();
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);
