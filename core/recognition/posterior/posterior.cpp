@@ -168,12 +168,17 @@ double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                               const Likelihood& likelihood, const Evidences& evidences) {
   double highest = kNoEvidence;
   for (const CurveClass curve_class : kCurveClasses) {
+    const auto& fit = fits[curve_class];
     const auto& evidence = evidences.classes[curve_class];
-    if (evidence && fits[curve_class] && is_wanted(evidences, curve_class) &&
-        std::isfinite(fits[curve_class]->chi2)) {
-      highest = std::max(
-          highest, likelihood.log_evidence(fits[curve_class]->chi2, evidence->log_occam_of_touch,
-                                           evidence->determined));
+    if (!fit || fit->at_limit || !std::isfinite(fit->chi2) || !is_wanted(evidences, curve_class)) {
+      continue;
+    }
+    if (evidence) {
+      highest = std::max(highest, likelihood.log_evidence(fit->chi2, evidence->log_occam_of_touch,
+                                                          evidence->determined));
+    } else if (!has_straight_paths(evidences, curve_class)) {
+      // Hopeless by chi-square alone, or no optimum of the prior's: then this bounds what it has.
+      highest = std::max(highest, likelihood.log_evidence(fit->chi2, 0.0, 0.0));
     }
   }
   return log_evidence_of_unclassified(likelihood, evidences, smooth_chi2) - highest;

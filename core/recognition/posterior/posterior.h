@@ -26,7 +26,8 @@ ClassProbabilities probabilities_of(const ClassFits& fits, double smooth_chi2,
 
 /// log odds of "unclassified" over the strongest class, if all of that class's prior were at the
 /// shape that fits. With few data a probability depends mostly on the priors of shapes; only if
-/// this margin is large do the data themselves exclude the classes.
+/// this margin is large do the data themselves exclude the classes. A class whose evidence was not
+/// told counts with all that its chi-square lets it have.
 double margin_of_unclassified(const ClassFits& fits, double smooth_chi2,
                               const Likelihood& likelihood, const Evidences& evidences);
 

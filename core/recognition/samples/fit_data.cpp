@@ -81,10 +81,14 @@ Eigen::Vector3d covariance_in_frame(const Eigen::Vector3d& c, const StoredSample
   return {there(0, 0), there(0, 1), there(1, 1)};
 }
 
-/// Copies normals and covariances.
+/// Copies normals and covariances. The normal of a tip that touched once is its direction.
 void set_details(std::span<const StoredPatch> patches, FitData* data) {
   // A direction known to rounding would be more precise than the computed normal of a curve. [rad]
   constexpr double kLeastSigma = 1e-7;
+  // A normal known to that leaves no doubt on which side a tip lies (tips/tip_sides.cpp), and the
+  // tip taken off along it misses the surface by a fiftieth of its radius: what is left of that the
+  // rounds that remove tips take away (weigh/fit_way.cpp). [rad]
+  constexpr double kToldSigma = 0.2;
   auto span = data->patches.begin();
   for (const StoredPatch& patch : patches) {
     if (patch.samples.empty()) {
@@ -99,6 +103,10 @@ void set_details(std::span<const StoredPatch> patches, FitData* data) {
         (alone ? point.normal : said.normal) = data->frame.rotate_back(detail.normal);
         (alone ? point.inverse_normal_sigma : said.inverse_normal_sigma) =
             1.0 / std::max(detail.normal_sigma_rad, kLeastSigma);
+        if (alone && point.offset > 0.0 && detail.normal_sigma_rad <= kToldSigma) {
+          point.tangent = -left_of(point.normal);
+          point.tangent_sigma = detail.normal_sigma_rad;
+        }
       }
       if (detail.covariance_m2.x() > 0.0) {
         said.covariance = covariance_in_frame(detail.covariance_m2, patch.samples[k], *data);
