@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <stdexcept>
 
 #include "tests/support/test_rng.h"
 
@@ -141,7 +140,8 @@ double random_arc(const SceneOptions& options, double total, double size, std::m
   return total * uniform(rng, options.least_fraction, options.most_fraction);
 }
 
-void touch(const Piece& piece, const SceneOptions& options, double scale, std::mt19937_64& rng,
+/// False if a patch finds no place beside the cusp.
+bool touch(const Piece& piece, const SceneOptions& options, double scale, std::mt19937_64& rng,
            Scene* scene) {
   constexpr int kMostTries = 100000;
   const ArcTable table(piece);
@@ -153,7 +153,7 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
     double end = 0.0;
     for (int tries = 0;; ++tries) {
       if (tries == kMostTries) {
-        throw std::invalid_argument("random_scene: a patch finds no place beside the cusp");
+        return false;
       }
       const double arc =
           std::min(random_arc(options, total, options.size_m / scale, rng), 0.98 * stratum);
@@ -195,6 +195,7 @@ void touch(const Piece& piece, const SceneOptions& options, double scale, std::m
     shuffled.t[i] = scene->t[order[i]];
   }
   *scene = std::move(shuffled);
+  return true;
 }
 
 Pose2 random_pose(const SceneOptions& options, std::mt19937_64& rng) {
@@ -220,7 +221,9 @@ Scene random_scene(CurveClass curve_class, const SceneOptions& options, std::mt1
   const Piece piece = piece_of(curve_class, shape, reach);
   const double scale = options.size_m / ArcTable(piece).half_diagonal;
   Scene scene = untouched(curve_class, shape, scale, options, rng);
-  touch(piece, options, scale, rng, &scene);
+  if (!touch(piece, options, scale, rng, &scene)) {
+    return random_scene(curve_class, options, rng);
+  }
   for (auto& patch : scene.t) {
     for (double& t : patch) {
       t = scaled_t(curve_class, t, scale);

@@ -75,7 +75,6 @@ DirectedTouches directed_touches(std::span<const StoredPatch> patches, const Sid
     result.bends = turns_of(result.touches);
   }
   if (have_other_radii(result.touches)) {
-    result.bends = bends_to_inside(result.touches, std::move(result.bends));
     if (are_strokes(result.touches)) {
       result.senses = senses_in_common(result.touches);
     }

@@ -10,6 +10,7 @@
 #include "core/numerics/probability/negligible.h"
 #include "core/recognition/posterior/out_of_reach.h"
 #include "core/recognition/samples/tips/bend_to_one_side.h"
+#include "core/recognition/samples/tips/sides_on_a_cubic.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/curve_of_centres.h"
 #include "core/recognition/weigh/directed_touches.h"
@@ -71,6 +72,18 @@ class TriedWays {
   /// All ways that are possible, by what strokes show of bend and travel.
   void try_possible() { try_all(possible_.ways); }
 
+  /// Of tips of different radii no curve of the centres tells how strokes travel, and where those
+  /// that hardly bend have theirs: the ways by which the surface may lie on one curve of the third
+  /// order.
+  void try_on_a_cubic() {
+    constexpr std::size_t kMost = 8;  // twice as many as are possible by bend and travel
+    if (possible_.ways.size() > 1 && have_other_radii(seen_.touches) &&
+        are_strokes(seen_.touches)) {
+      const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);
+      try_all(sides_on_a_cubic(seen_.touches, known, kMost, by_.work));
+    }
+  }
+
   /// Whether strokes that travel against one another may lie on one side of a curve by different
   /// sides of their own travel.
   bool may_turn() const { return seen_.senses.empty() && possible_.may_be_otherwise(); }
@@ -98,34 +111,6 @@ class TriedWays {
         return std::find(possible_.ways.begin(), possible_.ways.end(), way) != possible_.ways.end();
       });
       try_all(ways);
-    }
-  }
-
-  /// Of tips of different radii no curve of the centres tells where strokes that hardly bend have
-  /// theirs. Where a few of them lie otherwise than the others make probable, as on the arms of a
-  /// cusp: until all points have a curve.
-  void try_straight_strokes_otherwise() {
-    constexpr std::size_t kMost = 3;  // of such strokes: fourteen ways
-    if (!have_other_radii(seen_.touches) || possible_.ways.size() < 2) {
-      return;
-    }
-    const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);
-    std::vector<std::size_t> straight;
-    for (std::size_t p = 0; p < known.size(); ++p) {
-      const auto patch = seen_.touches.patch(p);
-      if (known[p] == 0 && patch.size() > 1 && !certain_turn(patch)) {
-        straight.push_back(p);
-      }
-    }
-    const std::size_t others = straight.size() <= kMost ? std::size_t{1} << straight.size() : 0;
-    for (std::size_t other = 1; other < others; ++other) {
-      for (std::size_t of = 0; of < 2 && !any_fits_all() && by_.work.allows(); ++of) {
-        std::vector<int> way = possible_.ways[of];
-        for (std::size_t k = 0; k < straight.size(); ++k) {
-          way[straight[k]] *= (other >> k & 1U) != 0 ? -1 : 1;
-        }
-        try_all({way});
-      }
     }
   }
 
@@ -165,7 +150,7 @@ class TriedWays {
   void try_all(const std::vector<std::vector<int>>& ways) {
     const std::size_t before = choices_.size();
     for (const std::vector<int>& sides : ways) {
-      if (choices_.empty() || (!is_excluded(sides) && by_.work.allows())) {
+      if (choices_.empty() || (!is_tried(sides) && !is_excluded(sides) && by_.work.allows())) {
         choices_.push_back(judged(fit_way(seen_.touches, sides, now_, starts_, centres_)));
       }
     }
@@ -180,6 +165,11 @@ class TriedWays {
                      : fit_way_again(std::move(choice), seen_.touches, now_, of_others, &centres_));
       }
     }
+  }
+
+  bool is_tried(const std::vector<int>& sides) const {
+    return std::any_of(choices_.begin(), choices_.end(),
+                       [&](const SideChoice& choice) { return choice.sides == sides; });
   }
 
   /// Whether it is said that tips do not lie so, and a conic that all points have agrees. (It would
@@ -301,7 +291,9 @@ SidedFits fit_over_sides(std::span<const StoredPatch> patches, const SideContext
   if (may_turn && !turn_first && by.work.allows() && !any_that(tells_sides)) {
     tried.try_along_centres();
   }
-  tried.try_straight_strokes_otherwise();
+  if (by.work.allows() && !any_that(tells_sides)) {
+    tried.try_on_a_cubic();
+  }
   sided.choices = std::move(tried).take();
   sided.centres = centres.next_start();
   take_most_probable(by, &sided);

@@ -49,33 +49,4 @@ bool may_bend_to_one_side(const FitData& touches, std::span<const double> bends)
   return true;
 }
 
-std::vector<double> bends_to_inside(const FitData& touches, std::vector<double> bends) {
-  std::vector<std::optional<double>> certain;
-  for (std::size_t p = 0; p < touches.patches.size(); ++p) {
-    certain.push_back(certain_turn(touches.patch(p)));
-  }
-  for (std::size_t p = 0; p < bends.size(); ++p) {
-    const auto stroke = touches.patch(p);
-    if (certain[p]) {
-      bends[p] = *certain[p];
-    }
-    if (certain[p] || stroke.size() < 2) {
-      continue;
-    }
-    const FitPoint& middle = stroke[stroke.size() / 2];
-    double to_the_left = 0.0;  // of the others' surface
-    for (std::size_t q = 0; q < certain.size(); ++q) {
-      if (certain[q]) {
-        for (const FitPoint& point : touches.patch(q)) {
-          const Vec2 surface =
-              point.position + std::copysign(point.offset, *certain[q]) * left_of(point.tangent);
-          to_the_left += cross(middle.tangent, surface - middle.position);
-        }
-      }
-    }
-    bends[p] = to_the_left != 0.0 ? to_the_left : bends[p];
-  }
-  return bends;
-}
-
 }  // namespace palpate

@@ -13,10 +13,4 @@ namespace palpate {
 /// `bends`: the sides to which the patches of `touches` bend, > 0 for left of their travel.
 bool may_bend_to_one_side(const FitData& touches, std::span<const double> bends);
 
-/// The sides to which strokes bend, > 0 for left, if one curve that bends to one side has them all.
-/// Those that bend beyond doubt as they show, the others to where the surface of those lies:
-/// centres of tips of different radii are on no curve that could tell. As `bends` where nothing
-/// tells, and of single touches.
-std::vector<double> bends_to_inside(const FitData& touches, std::vector<double> bends);
-
 }  // namespace palpate
