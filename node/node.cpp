@@ -13,6 +13,7 @@
 #include "node/process/clock.h"
 #include "node/process/reload_signal.h"
 #include "node/publish/status.h"
+#include "node/security/open_files.h"
 #include "node/wire/socket.h"
 
 namespace palpate {
@@ -61,10 +62,35 @@ std::size_t recognitions_at_a_time(const NodeOptions& options) {
   return options.workers > 0 ? options.workers : std::max(std::thread::hardware_concurrency(), 1U);
 }
 
+// Raises the limit of open files, and lets as many peers in as it has room for; says so where they
+// are fewer than wanted. Throws if there is room for none.
+NodeOptions within_open_files(NodeOptions options) {
+  constexpr std::size_t kSockets = 2;
+  constexpr std::size_t kOfLibzmq = 32;  // with some to spare
+  const std::size_t limit = raise_open_files_limit();
+  const std::size_t own =
+      count_open_files() + kOfLibzmq + 3 * recognitions_at_a_time(options) + kSpareWorkers;
+  const std::size_t room = peers_within(limit, own, kSockets);
+  if (room == 0) {
+    throw std::runtime_error("the limit of open files is " + std::to_string(limit) +
+                             " (ulimit -Hn), and this node needs " +
+                             std::to_string(own + kKeptFromPeers + kSockets));
+  }
+  if (room < options.peers.max_peers) {
+    spdlog::warn(
+        "max_peers of {}: the limit of open files is {} (ulimit -Hn) and has room for {} peers of "
+        "each socket",
+        options.peers.max_peers, limit, room);
+    options.peers.max_peers = room;
+  }
+  turn_peers_away_at(limit);
+  return options;
+}
+
 }  // namespace
 
 Node::Node(const NodeOptions& options, const NodeKeys& keys, ProbeFiles probe_files)
-    : options_(options),
+    : options_(within_open_files(options)),
       context_(1),
       zap_(make_zap_handler(context_, keys)),
       contacts_(open(zmq::socket_type::sub, options.contacts, contacts_settings(options, keys))),
@@ -258,7 +284,7 @@ void Node::tick(SteadyTime now) {
 }
 
 std::uint64_t Node::connections_cut() const {
-  std::uint64_t count = 0;
+  std::uint64_t count = peers_turned_away();
   for (const PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     if (peers != nullptr) count += peers->cut_count();
   }
@@ -289,6 +315,12 @@ void Node::log_cuts() {
   for (PeerGuard* peers : {contact_peers_.get(), result_peers_.get()}) {
     const std::string report = peers == nullptr ? std::string() : peers->take_report();
     if (!report.empty()) spdlog::warn("{}", report);
+  }
+  const std::uint64_t turned_away = peers_turned_away();
+  const std::uint64_t before = std::exchange(turned_away_told_, turned_away);
+  if (turned_away > before) {
+    spdlog::warn("{} connections closed as they came: no open files are left for them",
+                 turned_away - before);
   }
 }
 

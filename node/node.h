@@ -90,6 +90,7 @@ class Node {
   std::uint64_t recognitions_published_ = 0;
   std::uint64_t cuts_at_last_status_ = 0;
   std::uint64_t cuts_before_last_status_ = 0;
+  std::uint64_t turned_away_told_ = 0;
   std::size_t at_a_time_;  // recognitions computed at the same time, without the slow ones
   Workers workers_;
   std::vector<InWork> in_work_;  // indexed by worker

@@ -2,17 +2,30 @@
 import os
 import pathlib
 import re
+import resource
 import socket
+import subprocess
 import time
 import unittest
 
 import zmq
 from bus import Bus, Probe, latency_s, memory_kb, peak_memory_kb, wait_for
+from programs import NODE
 
 
 def cpu_s(process):
     fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rsplit(") ", 1)[1].split()
     return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+def connect_to(endpoint):
+    """A peer that says nothing."""
+    if endpoint.startswith("ipc://"):
+        peer = socket.socket(socket.AF_UNIX)
+        peer.connect(endpoint.removeprefix("ipc://"))
+        return peer
+    host, port = endpoint.removeprefix("tcp://").rsplit(":", 1)
+    return socket.create_connection((host, int(port)))
 
 
 class Planners(unittest.TestCase):
@@ -91,6 +104,37 @@ class Planners(unittest.TestCase):
             print(f"{received / taken:.0f} repeats a second of 8 answers")
             # At most every 50 ms, and once a status period.
             self.assertLess(received, 8 * (taken / 0.05 + taken + 2))
+
+    def test_more_peers_than_open_files_end_nothing(self):
+        for transport in ("ipc", "tcp"):
+            with Bus(transport) as bus:
+                node = bus.start_node(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (256, 256)))
+                found = re.search(r"max_peers of 256: the limit of open files is 256 .* room for (\d+) peers",
+                                  node.log_path.read_text())
+                self.assertTrue(found, node.log_path.read_text())
+                self.assertGreater(int(found.group(1)), 50)
+                idle = [connect_to(bus.results) for _ in range(400)]
+                planner = bus.subscriber("recognition/", "status/")
+                wait_for(planner, lambda m: hasattr(m, "connections_cut") and m.connections_cut > 0, 20)
+                for peer in idle:
+                    peer.close()
+                latency_s(Probe(bus.publisher()), planner, 1)
+                self.assertIsNone(node.poll())
+                print(f"{transport}: 400 peers with 256 open files, {found.group(1)} admitted")
+
+    def test_the_limit_of_open_files_is_raised(self):
+        with Bus() as bus:
+            node = bus.start_node(preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (128, 1024)))
+            self.assertEqual(resource.prlimit(node.pid, resource.RLIMIT_NOFILE), (1024, 1024))
+            self.assertNotIn("limit", node.log_path.read_text())
+
+    def test_too_few_open_files_are_told(self):
+        with Bus() as bus:
+            node = bus.start(NODE, "--contacts", bus.contacts, "--results", bus.results, stderr=subprocess.PIPE,
+                             preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (20, 20)))
+            _, err = node.communicate(timeout=10)
+            self.assertEqual(node.returncode, 1)
+            self.assertRegex(err, r"the limit of open files is 20 \(ulimit -Hn\), and this node needs \d+")
 
     def test_idle_peers_shut_nobody_out(self):
         with Bus() as bus:

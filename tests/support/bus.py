@@ -48,13 +48,13 @@ class Bus:
         self.processes.append(process)
         return process
 
-    def start_node(self, *arguments):
+    def start_node(self, *arguments, **options):
         """Starts a node and waits until its sockets are open. Its log is node.log_path."""
         self.logs += 1
         path = self.folder / f"node-{self.logs}.log"
         with open(path, "w") as log:
             node = self.start(NODE, "--contacts", self.contacts, "--results", self.results, *arguments,
-                              stderr=log)
+                              stderr=log, **options)
         node.log_path = path
         deadline = time.monotonic() + 10
         while time.monotonic() < deadline:
