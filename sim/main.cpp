@@ -196,12 +196,15 @@ struct Player {
     if (const int code = wait_for_recognizer(publisher); code != kPlayed) return code;
     const auto pause = std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(options.pause_s));
+    const auto say = [&](const std::string& news) {
+      if (!options.quiet) complain("the recognizer at " + options.contacts + " " + news);
+    };
     std::uint64_t refused = 0;
     for (std::uint64_t round = 0; options.repeat == 0 || round < options.repeat; ++round) {
       for (const sim::Scene& scene : scenes) {
         const bool is_first = round == 0 && &scene == &scenes.front();
         if (!is_first && stop_requested_before(now_steady() + pause, stop_fd)) {
-          return code_of(refused);
+          return code_of(refused, publisher);
         }
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
@@ -210,10 +213,10 @@ struct Player {
         std::vector<sim::TimedBatch> batches = sim::make_batches(scene, probes, object);
         const sim::PlaybackCounts counts =
             sim::play(batches, probes, options.fast ? 0.0 : options.speed, options.wait_s, stop_fd,
-                      publisher);
+                      publisher, say);
         if (!options.quiet) std::cerr << summary(scene, counts, object);
         refused += counts.refused;
-        if (counts.stopped || (options.fast && refused > 0)) return code_of(refused);
+        if (counts.stopped || (options.fast && refused > 0)) return code_of(refused, publisher);
       }
     }
     if (refused == 0 && publisher.recognizer_has_gone()) {
@@ -221,13 +224,18 @@ struct Player {
                     " has gone: what was published since is lost");
     }
     publisher.finish_within();
-    return code_of(refused);
+    return code_of(refused, publisher);
   }
 
-  int code_of(std::uint64_t refused) const {
-    return refused == 0 ? kPlayed
-                        : failed(counted(refused, "message") + " not taken: the recognizer at " +
-                                 options.contacts + " is behind or has gone");
+  int code_of(std::uint64_t refused, const client::ContactPublisher& publisher) const {
+    if (refused > 0) {
+      return failed(counted(refused, "message") + " not taken: the recognizer at " +
+                    options.contacts + " is behind or has gone");
+    }
+    if (const std::uint64_t lost = publisher.published_to_nobody(); lost > 0) {
+      return failed(counted(lost, "message") + " lost: nobody listened at " + options.contacts);
+    }
+    return kPlayed;
   }
 
   /// Waits in short steps, so that a stop signal is noticed.
@@ -245,8 +253,10 @@ struct Player {
     }
   }
 
+  static void complain(const std::string& why) { std::cerr << "palpate-sim: " << why << "\n"; }
+
   static int failed(const std::string& why) {
-    std::cerr << "palpate-sim: " << why << "\n";
+    complain(why);
     return kFailed;
   }
 };

@@ -9,7 +9,8 @@
 namespace palpate::sim {
 PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
                     double speed, double longest_wait_s, int stop_fd,
-                    client::ContactPublisher& publisher) {
+                    client::ContactPublisher& publisher,
+                    const std::function<void(const std::string&)>& say) {
   PlaybackCounts counts;
   const bool paced = speed > 0.0;
   const double scale = paced ? 1.0 / speed : 0.0;
@@ -30,6 +31,7 @@ PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProb
                            : publisher.publish_when_room(
                                  probe, timed.batch, std::chrono::duration<double>(longest_wait_s),
                                  [&] { return counts.stopped = stop_requested(stop_fd); });
+    if (const std::string news = publisher.news_of_recognizer(); !news.empty()) say(news);
     // What a stop keeps from waiting for room is like all that comes after it: not played.
     if (counts.stopped) break;
     counts.refused += taken ? 0 : 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 
@@ -20,9 +21,11 @@ struct PlaybackCounts {
 /// Publishes the batches in order, each when its last sample is due, `speed` times as fast as the
 /// scene; 0 = as fast as there is room for them, and ends early where there is none for
 /// `longest_wait_s`. Stamps the samples with the Unix time at which they are due. Ends
-/// early when `stop_fd` is readable. Modifies the batches.
+/// early when `stop_fd` is readable. Calls say() with the publisher's news of the recognizer.
+/// Modifies the batches.
 PlaybackCounts play(std::span<TimedBatch> batches, std::span<const SimulatedProbe> probes,
                     double speed, double longest_wait_s, int stop_fd,
-                    client::ContactPublisher& publisher);
+                    client::ContactPublisher& publisher,
+                    const std::function<void(const std::string&)>& say);
 
 }  // namespace palpate::sim

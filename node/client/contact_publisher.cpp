@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "node/process/clock.h"
@@ -45,7 +46,7 @@ void ContactPublisher::take_subscriptions() {
     const char kind = *message.topic.data<char>();
     if (kind == 1) ++listeners_;
     had_listeners_ = had_listeners_ || listeners_ > 0;
-    if (kind == 0 && listeners_ > 0) --listeners_;
+    if (kind == 0 && listeners_ > 0 && --listeners_ == 0) ++departures_;
   }
 }
 
@@ -83,7 +84,10 @@ bool ContactPublisher::publish_when_room(std::string_view probe, v1::ContactBatc
     // Anew for each attempt: the time of waiting for room is not on the way.
     header.set_stamp_ns(unix_time_ns());
     batch.SerializeToString(&buffer_);
-    if (send_now(socket_, state->topic, buffer_)) return true;
+    if (send_now(socket_, state->topic, buffer_)) {
+      published_to_nobody_ += binds_ && listeners_ == 0 ? 1 : 0;
+      return true;
+    }
     if (is_stopped() || now_steady() - start >= longest) return false;
     // An XPUB is always writable to a poll, so there is nothing to wait for but time.
     constexpr std::chrono::milliseconds kAgain{1};
@@ -108,6 +112,20 @@ bool ContactPublisher::recognizer_has_gone() {
   take_subscriptions();
   // A socket that connects keeps the subscriptions of the other side for its return.
   return binds_ ? had_listeners_ && listeners_ == 0 : handshakes_.is_gone();
+}
+
+std::string ContactPublisher::news_of_recognizer() {
+  const bool is_gone = recognizer_has_gone();
+  const std::uint64_t departures = binds_ ? departures_ : handshakes_.departures();
+  const bool has_left = std::exchange(departures_told_, departures) != departures;
+  const bool was_gone = std::exchange(is_gone_told_, is_gone);
+  if (is_gone && has_left) {
+    return binds_ ? "has gone: nobody listens, and what is published meanwhile is lost"
+                  : "has gone: what was on its way to it may be lost, what is published now waits";
+  }
+  if (is_gone || (!was_gone && !has_left)) return {};
+  return std::string(was_gone ? "is back" : "has gone and is back")
+      .append(": if it was started anew, it has forgotten what came before");
 }
 
 void ContactPublisher::finish_within(std::chrono::milliseconds longest) {

@@ -72,6 +72,14 @@ class ContactPublisher {
   /// since is lost unless it comes back, and what was on its way to it may be.
   bool recognizer_has_gone();
 
+  /// That the recognizer has gone or come back since the last call, and what that means for what is
+  /// published; worded to follow its name. Empty if it has not.
+  std::string news_of_recognizer();
+
+  /// Messages lost because nobody listened. Only a publisher that binds has them: one that connects
+  /// keeps messages for a recognizer that comes back, or refuses them.
+  std::uint64_t published_to_nobody() const { return published_to_nobody_; }
+
   /// The random number in the header of every message of this publisher.
   std::uint64_t epoch() const { return epoch_; }
 
@@ -92,6 +100,10 @@ class ContactPublisher {
   bool binds_ = false;
   bool had_listeners_ = false;
   int listeners_ = 0;
+  std::uint64_t departures_ = 0;  // of the last listener; if we bind
+  std::uint64_t departures_told_ = 0;
+  bool is_gone_told_ = false;
+  std::uint64_t published_to_nobody_ = 0;
   std::map<std::string, Probe, std::less<>> probes_;
   std::string buffer_;
 };

@@ -36,6 +36,7 @@ const std::string& HandshakeWatch::refusal() {
       is_gone_ = false;
       was_there_ = true;
     } else if (told->event == ZMQ_EVENT_DISCONNECTED) {
+      departures_ += was_there_ && !is_gone_ ? 1 : 0;
       is_gone_ = was_there_;
     } else if (told->event != ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL) {
       refusal_ = text_of(*told);

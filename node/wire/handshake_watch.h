@@ -1,6 +1,7 @@
 // Finds out why the other side refuses a connection.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <zmq.hpp>
 
@@ -28,6 +29,12 @@ class HandshakeWatch {
     return is_gone_;
   }
 
+  /// How often it has gone, as far as is known by now.
+  std::uint64_t departures() {
+    refusal();
+    return departures_;
+  }
+
   /// To be polled for input; then call refusal().
   zmq::socket_t& events() { return monitor_.events(); }
 
@@ -36,6 +43,7 @@ class HandshakeWatch {
   std::string refusal_;
   bool was_there_ = false;
   bool is_gone_ = false;
+  std::uint64_t departures_ = 0;
   int closed_in_a_row_ = 0;  ///< connections closed before the handshake succeeded
 };
 

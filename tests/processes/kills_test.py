@@ -14,7 +14,7 @@ import time
 import unittest
 import zlib
 
-from bus import Bus
+from bus import Bus, stop
 from programs import SIM, SOURCE, TOOL, run
 
 KILLS = int(os.environ.get("PALPATE_KILLS", "24"))
@@ -132,7 +132,31 @@ class Kills(unittest.TestCase):
                 _, err = probe.communicate(timeout=30)
                 bus.processes.remove(probe)
                 self.assertEqual(probe.returncode, 0 if comes_back else 1, err)
-                self.assertEqual(f"the recognizer at {bus.contacts} has gone" in err, not comes_back)
+                went = f"the recognizer at {bus.contacts} has gone"
+                self.assertEqual(f"{went}: what was published since is lost" in err, not comes_back)
+                self.assertEqual(err.count(f"{went}: what was on its way") + err.count(f"{went} and is back"), 1, err)
+                self.assertEqual("is back: if it was started anew, it has forgotten what came before" in err, comes_back)
+
+    def test_what_is_published_to_nobody_is_told(self):
+        with Bus() as bus:
+            points = bus.folder / "points.csv"
+            self.assertEqual(run(SIM, SCENE, "--csv", points)[0], 0)
+            for number, command in enumerate(((SIM, SCENE), (TOOL, "replay", points))):
+                address = f"ipc://{bus.folder}/{number}"
+                bus.contacts = "connect:" + address
+                node = bus.start_node()
+                probe = bus.start(*command, "--contacts", "bind:" + address, "--speed", "0.3", stderr=subprocess.PIPE)
+                time.sleep(0.5)
+                stop(node)
+                time.sleep(0.5)
+                bus.contacts = "connect:" + address
+                node = bus.start_node()
+                _, err = probe.communicate(timeout=30)
+                stop(node)
+                self.assertEqual(probe.returncode, 1, err)
+                self.assertIn("has gone: nobody listens, and what is published meanwhile is lost", err)
+                self.assertIn(" is back", err)
+                self.assertRegex(err, r"\d+ messages lost: nobody listened at bind:ipc://")
 
     def read_recordings(self, bus):
         """Each is records whose checksums are right, and at most the beginning of one more; `palpate replay` plays all

@@ -316,6 +316,10 @@ int run(const ReplayCommand& command) {
                                              std::chrono::duration<double>(command.wait_s),
                                              [&] { return is_stopped = stop_requested(stop_fd); })
                                        : publisher.publish(message.probe, message.batch);
+    if (const std::string news = publisher.news_of_recognizer(); !news.empty()) {
+      progress.end();
+      complain("the recognizer at " + command.connection.endpoint + " " + news, kDone);
+    }
     // What a stop keeps from waiting for room is like all that comes after it: not replayed.
     if (is_stopped) break;
     ++messages;
@@ -337,6 +341,11 @@ int run(const ReplayCommand& command) {
     return complain("the recognizer at " + command.connection.endpoint +
                         " has gone: what was published since is lost",
                     kFailed);
+  }
+  if (const std::uint64_t lost = publisher.published_to_nobody(); lost > 0) {
+    return complain(
+        counted(lost, "message") + " lost: nobody listened at " + command.connection.endpoint,
+        kFailed);
   }
   return refused == 0 && is_whole ? kDone : kFailed;
 }
