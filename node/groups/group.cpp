@@ -45,11 +45,12 @@ v1::RejectReason Group::judge(const ContactMessage& message, const Probe* probe,
   return v1::REJECT_REASON_UNSPECIFIED;
 }
 
-std::size_t Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
+Superseded Group::take(const ContactMessage& message, Continuity continuity, SteadyTime now) {
   const bool begins_object = members_.empty() || message.object != object_;
-  std::size_t superseded = 0;
+  Superseded superseded;
   if (begins_object) {
-    superseded = waiting_.sample_count();
+    superseded = waiting();
+    was_begun_ = false;
     waiting_.clear();
     members_.clear();
     frame_ = message.frame;
@@ -95,6 +96,7 @@ void Group::forget_probe(std::string_view probe) {
 std::shared_ptr<GroupRecognizer> Group::begin_work() {
   assert(!in_work_);
   in_work_ = true;
+  was_begun_ = true;
   in_work_bytes_ = waiting_.bytes();
   // The recognizer's queue is empty: it has processed its messages.
   std::swap(recognizer_->contacts, waiting_);

@@ -30,6 +30,12 @@ struct GroupOptions {
   std::optional<CurveClass> given_class = {};
 };
 
+/// What has waited in vain.
+struct Superseded {
+  std::size_t samples = 0;
+  std::size_t objects = 0;  ///< of which no sample was recognised
+};
+
 /// Owned by the node's thread. Its recognizer runs on a worker's thread and computes one answer at
 /// a time. Messages that arrive meanwhile wait and are then answered together: under load there are
 /// fewer answers, but none is delayed.
@@ -46,8 +52,8 @@ class Group {
   v1::RejectReason judge(const ContactMessage& message, const Probe* probe, SteadyTime now) const;
 
   /// Accepts a message that judge() has passed and queues it. If a new object begins, the waiting
-  /// messages of the old one are dropped. Returns how many samples these had.
-  std::size_t take(const ContactMessage& message, Continuity continuity, SteadyTime now);
+  /// messages of the old one are dropped. Returns what was dropped.
+  Superseded take(const ContactMessage& message, Continuity continuity, SteadyTime now);
 
   /// Moves all waiting messages to the recognizer and returns it for run(). Until end_work() it
   /// belongs to the thread that runs it.
@@ -71,7 +77,10 @@ class Group {
   /// Memory of the messages that wait or are being processed. [bytes]
   std::size_t queued_bytes() const { return waiting_.bytes() + in_work_bytes_; }
 
-  std::size_t waiting_samples() const { return waiting_.sample_count(); }
+  /// What would wait in vain if nothing more were recognised.
+  Superseded waiting() const {
+    return {waiting_.sample_count(), members_.empty() || was_begun_ ? 0U : 1U};
+  }
 
   /// Whether other probes than this one have touched the present object.
   bool is_touched_by_others_than(std::string_view probe) const;
@@ -110,6 +119,7 @@ class Group {
   std::shared_ptr<GroupRecognizer> recognizer_;
   ContactQueue waiting_;
   bool in_work_ = false;
+  bool was_begun_ = false;  // a recognition of the present object
   std::size_t in_work_bytes_ = 0;
   std::chrono::nanoseconds expected_compute_{0};
   std::string frame_;

@@ -46,7 +46,7 @@ Group& GroupRegistry::add(std::string_view name, std::string_view probe, SteadyT
   if (*place != groups_.end()) {
     evicted = (*place)->first;
     queued_bytes_ -= (*place)->second.group.queued_bytes();
-    superseded_samples_ += (*place)->second.group.waiting_samples();
+    count_superseded((*place)->second.group.waiting());
     groups_.erase(*place);
     ++evicted_count_;
   }
@@ -57,10 +57,15 @@ Group& GroupRegistry::add(std::string_view name, std::string_view probe, SteadyT
   return entry->second.group;
 }
 
+void GroupRegistry::count_superseded(const Superseded& more) {
+  superseded_samples_ += more.samples;
+  superseded_objects_ += more.objects;
+}
+
 void GroupRegistry::take(Group& group, const ContactMessage& message, Continuity continuity,
                          SteadyTime now) {
   queued_bytes_ -= group.queued_bytes();
-  superseded_samples_ += group.take(message, continuity, now);
+  count_superseded(group.take(message, continuity, now));
   queued_bytes_ += group.queued_bytes();
   Entry& entry = groups_.find(group.name())->second;
   if (entry.waiting) return;

@@ -80,6 +80,8 @@ class GroupRegistry {
   /// Samples of accepted messages that have waited in vain: for an object that another one has
   /// followed, or in a group that was evicted.
   std::uint64_t superseded_samples() const { return superseded_samples_; }
+  /// Objects that had no answer before another one followed or their group was evicted.
+  std::uint64_t superseded_objects() const { return superseded_objects_; }
 
  private:
   struct Entry {
@@ -94,6 +96,8 @@ class GroupRegistry {
   // The group to replace, or end() if there is a free place; nullopt if there is no room.
   std::optional<Entries::const_iterator> place_for(std::string_view probe, SteadyTime now) const;
 
+  void count_superseded(const Superseded& more);
+
   GroupBounds bounds_;
   RecognizerOptions recognizer_options_;
   GroupOptions group_options_;
@@ -103,6 +107,7 @@ class GroupRegistry {
   std::size_t queued_bytes_ = 0;
   std::uint64_t evicted_count_ = 0;
   std::uint64_t superseded_samples_ = 0;
+  std::uint64_t superseded_objects_ = 0;
 };
 
 }  // namespace palpate

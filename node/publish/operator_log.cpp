@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <utility>
 
 namespace palpate {
 namespace {
@@ -48,6 +49,13 @@ void OperatorLog::tell(Intake& intake, const ZapHandler* zap, SteadyTime now) {
                  probe.empty() ? ", of no probe's topic" : ", the last of probe " + probe);
   }
   rejections_told_ = counters.rejected;
+  const std::uint64_t superseded = intake.groups().superseded_objects();
+  const std::uint64_t before = std::exchange(superseded_told_, superseded);
+  if (superseded > before) {
+    spdlog::warn(
+        "{} objects without an answer: the next one of their group, or a new group, came too soon",
+        superseded - before);
+  }
   if (zap != nullptr && zap->denied_count() != denied_told_) {
     spdlog::warn("{} clients denied: their keys are not on the list; the last from {}",
                  zap->denied_count() - denied_told_, zap->last_denied());

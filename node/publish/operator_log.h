@@ -1,5 +1,6 @@
-// Messages for the operator: which probes come and fall silent, which clients are refused, and what
-// is rejected, each by name. Only a few lines, however much happens.
+// Messages for the operator: which probes come and fall silent, which clients are refused, what is
+// rejected, each by name, and how many objects had no answer. Only a few lines, however much
+// happens.
 #pragma once
 
 #include <cstdint>
@@ -19,6 +20,7 @@ class OperatorLog {
 
   decltype(IntakeCounters::rejected) rejections_told_{};
   std::uint64_t denied_told_ = 0;
+  std::uint64_t superseded_told_ = 0;  // objects
 };
 
 }  // namespace palpate

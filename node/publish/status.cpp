@@ -38,6 +38,7 @@ void fill_status(Intake& intake, ComputeTimes& compute_times, const NodeVitals& 
   out.set_samples_received(counters.samples_received);
   out.set_samples_refused(counters.samples_refused);
   out.set_samples_superseded(intake.groups().superseded_samples());
+  out.set_objects_superseded(intake.groups().superseded_objects());
   std::uint64_t malformed = 0;
   for (std::size_t i = 0; i < counters.rejected.size(); ++i) {
     if (counters.rejected[i] == 0) continue;

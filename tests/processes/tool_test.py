@@ -12,7 +12,7 @@ import termios
 import time
 import unittest
 
-from bus import Bus, wait_for
+from bus import Bus, Probe, wait_for, wait_for_log
 from palpate.v1 import curve_pb2
 from programs import SIM, SOURCE, TOOL, run
 
@@ -126,6 +126,32 @@ class Tool(unittest.TestCase):
             code, _, err = run(TOOL, "watch", "--results", bus.results, "--count", "1", "--timeout", "2", "absent", "gone")
             self.assertEqual(code, 1)
             self.assertIn(f"no recognition of group absent, gone heard for 2 s on {bus.results}", err)
+
+    def test_watch_and_the_log_tell_objects_without_an_answer(self):
+        objects = 500
+        with Bus() as bus:
+            node = bus.start_node("--status-period-s", "0.1")
+            planner = bus.subscriber("recognition/", "status/", high_water_mark=0)
+            watch = bus.start(TOOL, "watch", "--results", bus.results, "--interval", "0", stdout=subprocess.PIPE,
+                              stderr=subprocess.DEVNULL)
+            probe = Probe(bus.publisher())
+            wait_for(planner, lambda m: hasattr(m, "groups"))
+            for number in range(1, objects + 1):
+                probe.send(probe.batch(0, object_number=number))
+            answered = set()
+
+            def all_is_told(message):
+                if hasattr(message, "curve_class"):
+                    answered.add(message.object)
+                    return False
+                return len(answered) + message.objects_superseded == objects
+
+            count = wait_for(planner, all_is_told).objects_superseded
+            self.assertGreater(count, 0)
+            wait_for_log(node, "objects without an answer")
+            while watch.stdout.readline() != f"recognizer recognizer: {count} objects without an answer\n":
+                self.assertIsNone(watch.poll())
+            watch.stdout.close()
 
     def test_list_and_hz_show_the_topics(self):
         with Bus() as bus:

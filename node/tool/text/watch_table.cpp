@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "node/files/counted.h"
 #include "node/files/printable.h"
 #include "node/files/quantity.h"
 #include "node/tool/text/advice.h"
@@ -116,10 +117,17 @@ std::string head_line(const WatchedState& state) {
       static_cast<unsigned long long>(state.status.messages_received()),
       1e-6 * static_cast<double>(state.status.compute_p50_ns()),
       1e-6 * static_cast<double>(state.status.compute_p99_ns()));
-  return text;
+  std::string line = text;
+  if (state.status.objects_superseded() > 0)
+    line.append("; ").append(superseded_text(state.status));
+  return line;
 }
 
 }  // namespace
+
+std::string superseded_text(const v1::NodeStatus& status) {
+  return counted(status.objects_superseded(), "object") + " without an answer";
+}
 
 std::string silence_text(double silent_s) {
   char text[48];

@@ -33,6 +33,9 @@ struct WatchedState {
 std::vector<std::string> watch_table(const WatchedState& state, std::size_t columns,
                                      std::size_t rows);
 
+/// E.g. "3 objects without an answer".
+std::string superseded_text(const v1::NodeStatus& status);
+
 /// E.g. "recognizer silent for 6 s".
 std::string silence_text(double silent_s);
 

@@ -56,6 +56,7 @@ void write_node(const std::string& name, const LiveNode& node, SteadyTime now, J
   json.member("accepted", status.messages_accepted());
   json.member("gaps", status.gaps());
   json.member("missing", status.missing());
+  json.member("objectsSuperseded", status.objects_superseded());
   json.member("computeP50Ms", 1e-6 * static_cast<double>(status.compute_p50_ns()), 3);
   json.member("computeP99Ms", 1e-6 * static_cast<double>(status.compute_p99_ns()), 3);
   json.key("probes").begin_array();

@@ -46,6 +46,28 @@ TEST_F(GroupRegistryTest, SamplesThatWaitInVainAreCounted) {
   EXPECT_EQ(intake.groups().superseded_samples(), 37U);
 }
 
+TEST_F(GroupRegistryTest, ObjectsWithoutAnAnswerAreCounted) {
+  IntakeOptions options;
+  options.groups.max_groups_per_probe = 1;
+  Intake intake(options);
+  give(intake, "p", in_group("cup", 1, line_batch("p", 1, 0)));
+  Group& cup = *intake.groups().find("cup");
+  // The first object is being recognised while the others come, and is no longer waiting.
+  intake.groups().begin_work(cup)->contacts.clear();
+  std::uint64_t seq = 0;
+  for (const std::uint64_t object : {2, 3, 3, 4}) {
+    give(intake, "p", in_group("cup", object, line_batch("p", 1, ++seq)));
+  }
+  EXPECT_EQ(intake.groups().superseded_objects(), 2U);
+  intake.groups().end_work(cup);
+  intake.groups().begin_work(cup)->contacts.clear();
+  intake.groups().end_work(cup);
+  give(intake, "p", in_group("cup", 5, line_batch("p", 1, 20)));
+  EXPECT_EQ(intake.groups().superseded_objects(), 2U);
+  give(intake, "p", in_group("plate", 6, line_batch("p", 1, 21)));
+  EXPECT_EQ(intake.groups().superseded_objects(), 3U);
+}
+
 TEST_F(GroupRegistryTest, AGroupThatAnotherProbeHasTakenOverIsNotGivenUp) {
   IntakeOptions options;
   options.groups.max_groups_per_probe = 2;

@@ -57,6 +57,7 @@ TEST(Status, SaysWhatHappened) {
   for (const std::uint64_t seq : {0, 1, 5}) {
     v1::ContactBatch batch = line_batch("p", 9, seq);
     batch.mutable_header()->set_stamp_ns(23);
+    batch.set_object(seq < 5 ? 1 : 2);
     intake.take(2, contact_topic("p"), batch.SerializeAsString(), now, 100);
   }
   intake.take(1, "x", "", now, 0);
@@ -79,6 +80,7 @@ TEST(Status, SaysWhatHappened) {
   EXPECT_EQ(status.rejected(1).reason(), v1::REJECT_REASON_TIP_RADIUS);
   EXPECT_EQ(status.missing(), 3U);
   EXPECT_EQ(status.gaps(), 1U);
+  EXPECT_EQ(status.objects_superseded(), 1U);
   EXPECT_EQ(status.recognitions_published(), 3U);
   EXPECT_EQ(status.clients_denied(), 2U);
   EXPECT_EQ(status.compute_p50_ns(), 1000);

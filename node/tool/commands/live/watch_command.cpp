@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "node/client/result_subscriber.h"
 #include "node/files/printable.h"
@@ -104,6 +105,11 @@ class TextLines : public WatchOutput {
       if (news) std::cout << probe_line(probe) << std::endl;
       known = {true, probe.alive(), probe.gaps(), probe.rejected(), probe.restarts()};
     }
+    std::uint64_t& told = superseded_[status.header().source()];
+    if (std::exchange(told, status.objects_superseded()) < status.objects_superseded()) {
+      std::cout << "recognizer " << printable(status.header().source()) << ": "
+                << superseded_text(status) << std::endl;
+    }
   }
 
   /// A person reads a few lines a second: the newest answer of each group, no oftener than asked.
@@ -164,6 +170,7 @@ class TextLines : public WatchOutput {
   std::chrono::duration<double> interval_;
   std::map<std::string, Shown> groups_;
   std::map<std::string, Probe> probes_;
+  std::map<std::string, std::uint64_t> superseded_;  // objects, by node
   bool was_silent_ = false;
   bool was_heard_ = false;
 };

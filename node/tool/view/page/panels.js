@@ -147,11 +147,12 @@ export class Panels {
     }));
     fill("nodes", overview.nodes.map((node) => {
       const silent = node.silentS > SILENT_S;
+      const unanswered = node.objectsSuperseded > 0 ? `, ${node.objectsSuperseded} objects without an answer` : "";
       return row([node.name, html("span", silent ? `silent for ${age(node.silentS)}` : "alive",
                                   silent ? "bad" : "good"),
                   `up ${age(node.uptimeS)}, computing ${number(node.computeP50Ms, 2)} ms (p99 ` +
                   `${number(node.computeP99Ms, 2)} ms), ${node.accepted} of ${node.received} messages taken` +
-                  drawn]);
+                  unanswered + drawn]);
     }));
   }
 }

@@ -39,8 +39,8 @@
  *   ageS: number, gaps: number, missing: number, restarts: number, rejected: number}} Probe */
 
 /** @typedef {{name: string, version: string, silentS: number, uptimeS: number, received: number,
- *   accepted: number, gaps: number, missing: number, computeP50Ms: number, computeP99Ms: number,
- *   probes: Probe[]}} Node */
+ *   accepted: number, gaps: number, missing: number, objectsSuperseded: number, computeP50Ms: number,
+ *   computeP99Ms: number, probes: Probe[]}} Node */
 
 /** @typedef {{groups: {name: string, object: string, status: string, class: string, probability: number,
  *   ageS: number}[], nodes: Node[]}} Overview */

@@ -10,6 +10,7 @@ namespace {
 
 using testing::Each;
 using testing::HasSubstr;
+using testing::Not;
 using testing::SizeIs;
 using testing::StartsWith;
 
@@ -58,6 +59,13 @@ TEST(WatchTable, SaysThatTheRecognizerIsSilent) {
   state.silent_s = 6.2;
   EXPECT_EQ(watch_table(state, 80, 24)[0], "recognizer silent for 6 s");
   EXPECT_EQ(watch_table({}, 80, 24)[0], "waiting for the recognizer");
+}
+
+TEST(WatchTable, SaysHowManyObjectsHaveNoAnswer) {
+  WatchedState state = state_of(1, 1);
+  EXPECT_THAT(watch_table(state, 200, 24)[0], Not(HasSubstr("without an answer")));
+  state.status.set_objects_superseded(3);
+  EXPECT_THAT(watch_table(state, 200, 24)[0], HasSubstr("; 3 objects without an answer"));
 }
 
 TEST(WatchTable, FitsTheTerminal) {
