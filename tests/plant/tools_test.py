@@ -28,6 +28,25 @@ class Causes(unittest.TestCase):
             self.said(alone, "replicas > 1 not supported")
 
 
+    def test_contacts_in_no_partition_are_told(self):
+        for partitions in (2, 0):
+            with Bus() as bus, Servers(bus.folder, partitions=partitions) as servers:
+                servers.start().wait()
+                down = recogniser(bus, servers.url, "down", ["press:0", "press:1"])
+                carrier(bus, servers.url, "up", "press", f"bind:ipc://{bus.folder}/contacts")
+                with Client(servers.url) as client:
+                    gateway_status(client, "press", "up")
+                    Probe(bus.publisher(), "finger", "hand").stroke(5)
+                    wait_for_stored(client, "palpate-press-contact", 5)
+                words = "contacts of 1 subjects of the cell are in no partition"
+                if partitions:
+                    time.sleep(6)
+                    self.assertNotIn("in no partition", down.log_path.read_text())
+                else:
+                    self.said(down, "press:0: " + words)
+                    self.said(down, "press:1: " + words)
+
+
 class Tools(unittest.TestCase):
     def test_they_see_the_recognisers_node_as_any_other(self):
         with Bus() as bus, Servers(bus.folder) as servers:

@@ -21,6 +21,8 @@ constexpr int kMostUnacknowledged = 8192;
 // The server sends this heartbeat for a consumer. After kSilence without one we ask for it.
 constexpr milliseconds kHeartbeat{500};
 constexpr milliseconds kSilence{1500};
+// How often contacts in no partition are looked for: the mapping is the servers', and may change.
+constexpr std::chrono::seconds kLook{5};
 constexpr std::int64_t kNanosecondsPerMillisecond = 1'000'000;
 // Practically never: nothing is delivered twice, because each new beginning creates its own
 // consumer.
@@ -138,6 +140,27 @@ void ContactConsumer::tend(SteadyTime now) {
     heard_ = now;
     check();
   }
+  const bool may_be_unmapped = !place_.partition.empty() && !is_unmapped_told_;
+  if (may_be_unmapped && subscription_ != 0 && plant_.is_connected() && now >= next_look_) {
+    next_look_ = now + kLook;
+    look_for_unmapped();
+  }
+}
+
+/// Contacts that no mapping of the servers has divided are stored under their first subjects, which
+/// no place with a partition receives.
+void ContactConsumer::look_for_unmapped() {
+  plant_.api(this, "STREAM.INFO." + contact_stream(place_.cell),
+             {{"subjects_filter", contact_filter({place_.cell, {}})}}, [this](const json* answer) {
+               if (answer == nullptr) return;
+               const auto state = answer->find("state");
+               if (state == answer->end() || !state->contains("subjects")) return;
+               is_unmapped_told_ = true;
+               spdlog::warn(
+                   "{}: contacts of {} subjects of the cell are in no partition, and no place with "
+                   "a partition recognises them: the server's mappings did not divide them",
+                   printable(place_.text()), (*state)["subjects"].size());
+             });
 }
 
 /// After silence: the consumer may be without a leader, it may be gone, or a message may be lost.

@@ -33,7 +33,8 @@ class ContactConsumer {
   void done(std::uint64_t stream_seq);
   /// Tells the plant up to which contact all are done.
   void acknowledge();
-  /// Call it often. Acknowledges, and checks the consumer if the plant has been silent for long.
+  /// Call it often. Acknowledges, checks the consumer if the plant has been silent for long, and
+  /// says so if contacts of the cell are in no partition.
   void tend(SteadyTime now);
 
  private:
@@ -46,6 +47,7 @@ class ContactConsumer {
   void make(std::uint64_t start_seq);
   void take(const PlantMessage& message);
   void check();
+  void look_for_unmapped();
 
   Plant& plant_;
   PlaceName place_;
@@ -57,6 +59,8 @@ class ContactConsumer {
   std::uint64_t consumer_seq_ = 0;  // of the last message delivered, counted by the consumer
   std::uint64_t stream_seq_ = 0;    // the same, counted by the stream
   SteadyTime heard_;
+  SteadyTime next_look_;  // for contacts in no partition
+  bool is_unmapped_told_ = false;
   std::uint64_t floor_ = 0;          // of the previous consumer, when this one began
   std::deque<Delivered> delivered_;  // not acknowledged, in the stream's order
   std::string ack_reply_;            // of the last contact that may be acknowledged
