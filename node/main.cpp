@@ -17,6 +17,7 @@
 #include "node/environment.h"
 #include "node/files/printable.h"
 #include "node/files/probe_files.h"
+#include "node/files/written_file.h"
 #include "node/node.h"
 #include "node/process/log_sink.h"
 #include "node/process/quiet_protobuf.h"
@@ -183,8 +184,8 @@ int main(int argc, char** argv) {
   }
   if (command_line.print_config) {
     std::fputs(palpate::to_text(palpate::to_config(*options.value)).c_str(), stdout);
-    if (std::fflush(stdout) != 0) {
-      spdlog::error("standard output: cannot be written");
+    if (const std::string why = palpate::flush_standard_output(); !why.empty()) {
+      spdlog::error("{}", why);
       return kFailed;
     }
   }

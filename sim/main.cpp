@@ -15,6 +15,7 @@
 #include "node/csv/contact_csv.h"
 #include "node/files/counted.h"
 #include "node/files/overwritten_input.h"
+#include "node/files/written_file.h"
 #include "node/process/clock.h"
 #include "node/process/number_checks.h"
 #include "node/process/quiet_protobuf.h"
@@ -97,16 +98,24 @@ void add_options(CLI::App& app, CommandLine& options) {
 /// A file, or standard output for "-".
 class Output {
  public:
-  bool open(const std::string& path) {
+  /// What is wrong, or nothing.
+  std::string open(const std::string& path) {
     path_ = path;
-    if (path == "-" || path.empty()) return true;
+    if (path == "-" || path.empty()) return {};
+    errno = 0;
     file_.open(path, std::ios::binary | std::ios::trunc);
-    return static_cast<bool>(file_);
+    return file_ ? std::string() : cannot_be_written(path);
   }
 
-  bool write(const std::string& text) {
-    std::ostream& out = path_ == "-" ? std::cout : file_;
-    return path_.empty() || static_cast<bool>(out << text << std::flush);
+  /// What is wrong, or nothing.
+  std::string write(const std::string& text) {
+    if (path_.empty()) return {};
+    errno = 0;
+    if (path_ == "-") {
+      std::cout << text;
+      return flush_standard_output();
+    }
+    return file_ << text << std::flush ? std::string() : cannot_be_written(path_);
   }
 
  private:
@@ -155,13 +164,13 @@ struct Player {
   Output truth;
   int stop_fd;
 
-  /// Writes the truth. Returns false if it cannot be written.
-  bool tell_truth(const sim::Scene& scene, std::span<const sim::SimulatedProbe> probes,
-                  std::uint64_t object) {
+  /// Writes the truth. What is wrong, or nothing.
+  std::string tell_truth(const sim::Scene& scene, std::span<const sim::SimulatedProbe> probes,
+                         std::uint64_t object) {
     for (const v1::SceneTruth& line : sim::scene_truths(scene, probes, object)) {
-      if (!truth.write(sim::to_json(line) + "\n")) return false;
+      if (std::string why = truth.write(sim::to_json(line) + "\n"); !why.empty()) return why;
     }
-    return true;
+    return {};
   }
 
   int export_csv(const std::vector<sim::Scene>& scenes) {
@@ -171,15 +180,15 @@ struct Player {
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
         sim::append_rows(scene, probes, object, table);
-        if (!tell_truth(scene, probes, object))
-          return failed(options.truth + ": cannot be written");
+        if (const std::string why = tell_truth(scene, probes, object); !why.empty()) {
+          return failed(why);
+        }
       }
     }
     Output csv;
-    if (!csv.open(options.csv) || !csv.write(to_csv(table))) {
-      return failed(options.csv + ": cannot be written");
-    }
-    return kPlayed;
+    std::string why = csv.open(options.csv);
+    if (why.empty()) why = csv.write(to_csv(table));
+    return why.empty() ? kPlayed : failed(why);
   }
 
   int publish(const std::vector<sim::Scene>& scenes) {
@@ -208,8 +217,9 @@ struct Player {
         }
         const std::vector<sim::SimulatedProbe> probes = sim::simulate_contacts(scene, round);
         const std::uint64_t object = numbers.next(scene);
-        if (!tell_truth(scene, probes, object))
-          return failed(options.truth + ": cannot be written");
+        if (const std::string why = tell_truth(scene, probes, object); !why.empty()) {
+          return failed(why);
+        }
         std::vector<sim::TimedBatch> batches = sim::make_batches(scene, probes, object);
         const sim::PlaybackCounts counts =
             sim::play(batches, probes, options.fast ? 0.0 : options.speed, options.wait_s, stop_fd,
@@ -284,9 +294,7 @@ int run(const CLI::App& app, const CommandLine& options) {
     scenes.push_back(std::move(*scene.value));
   }
   Player player{options, ObjectNumbers(app, options), {}, take_stop_signals()};
-  if (!player.truth.open(options.truth)) {
-    return Player::failed(options.truth + ": cannot be written");
-  }
+  if (why = player.truth.open(options.truth); !why.empty()) return Player::failed(why);
   return options.csv.empty() ? player.publish(scenes) : player.export_csv(scenes);
 }
 

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <utility>
 
+#include "node/files/written_file.h"
 #include "palpate/v1/recording.pb.h"
 
 namespace palpate {
@@ -60,6 +61,7 @@ std::string RecordingWriter::open(const std::string& path) {
   if (std::filesystem::exists(path)) {
     return path + ": exists already";
   }
+  path_ = path;
   file_.open(path, std::ios::binary | std::ios::trunc);
   if (!file_) return path + ": " + std::strerror(errno);
   if (!(file_ << kRecordingMagic << std::flush)) {
@@ -73,7 +75,7 @@ std::string RecordingWriter::open(const std::string& path) {
   return {};
 }
 
-bool RecordingWriter::write(const RecordedMessage& message) {
+std::string RecordingWriter::write(const RecordedMessage& message) {
   buffer_ = kMark;
   put(buffer_, static_cast<std::uint64_t>(message.received_ns), 8);
   put(buffer_, message.frame_count, 4);
@@ -82,8 +84,9 @@ bool RecordingWriter::write(const RecordedMessage& message) {
   const std::string body = message.topic + message.payload;
   put(buffer_, checksum(buffer_ + std::string(4, '\0'), body), 4);
   buffer_ += body;
-  return static_cast<bool>(
-      file_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size())).flush());
+  errno = 0;
+  file_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size())).flush();
+  return file_ ? std::string() : cannot_be_written(path_);
 }
 
 bool is_recording(const std::string& path) {

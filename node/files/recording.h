@@ -41,10 +41,11 @@ class RecordingWriter {
   /// file.
   std::string open(const std::string& path);
 
-  /// Returns false if the file cannot be written.
-  bool write(const RecordedMessage& message);
+  /// Returns an empty string, or why the file cannot be written.
+  std::string write(const RecordedMessage& message);
 
  private:
+  std::string path_;
   std::ofstream file_;
   std::string buffer_;
 };

@@ -111,10 +111,15 @@ void Spool::add_before(std::uint64_t next_segment, std::string_view topic,
   }
   // The oldest are what the bound takes.
   const bool has_room = bytes_ + size <= most_bytes_;
-  if (!kept_writer_ || !has_room ||
-      !kept_writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)})) {
-    if (kept_writer_ && has_room) error_ = path_of(number) + ": cannot be written";
-    if (has_room) kept_writer_.reset();
+  if (!kept_writer_ || !has_room) {
+    ++lost_;
+    return;
+  }
+  const std::string why =
+      kept_writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)});
+  if (!why.empty()) {
+    error_ = why;
+    kept_writer_.reset();
     ++lost_;
     return;
   }
@@ -128,12 +133,17 @@ void Spool::add(std::string_view topic, std::string_view payload) {
     writer_.reset();
   }
   while (bytes_ + size > most_bytes_ && !segments_.empty()) drop_oldest();
-  if (!begin_segment() ||
-      !writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)})) {
-    if (writer_) error_ = path_of(segments_.rbegin()->first) + ": cannot be written";
+  if (!begin_segment()) {
+    ++lost_;
+    return;
+  }
+  const std::string why =
+      writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)});
+  if (!why.empty()) {
+    error_ = why;
     ++lost_;
     // The part of the record on disk ends this file; the next record gets a new file.
-    if (writer_) segments_.rbegin()->second.is_closed = true;
+    segments_.rbegin()->second.is_closed = true;
     writer_.reset();
     return;
   }

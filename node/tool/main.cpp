@@ -9,6 +9,7 @@
 #include "core/curves/curve_class.h"
 #include "node/client/connection.h"
 #include "node/files/printable.h"
+#include "node/files/written_file.h"
 #include "node/process/quiet_protobuf.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/usage_error.h"
@@ -106,10 +107,7 @@ int main(int argc, char** argv) {
   palpate::silence_protobuf();
   const int exit_code = run(argc, argv);
   // Check that all output has been written: a full disk shows only now.
-  const bool written =
-      std::cout.flush().good() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (!written && exit_code == palpate::kDone) {
-    return palpate::complain("standard output: cannot be written", palpate::kFailed);
-  }
+  const std::string why = palpate::flush_standard_output();
+  if (!why.empty() && exit_code == palpate::kDone) return palpate::complain(why, palpate::kFailed);
   return exit_code;
 }

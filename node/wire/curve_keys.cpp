@@ -16,6 +16,7 @@
 
 #include "node/files/bounded_file.h"
 #include "node/files/trimmed.h"
+#include "node/files/written_file.h"
 #include "node/wire/topics.h"
 
 namespace palpate {
@@ -153,11 +154,13 @@ std::string certificate(const char* comment, const CurveKeyPair& keys, bool with
 std::string write_new_file(const std::string& path, mode_t mode, const std::string& text) {
   const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
   if (fd < 0) return path + ": " + std::strerror(errno);
+  errno = 0;
   const ssize_t written = ::write(fd, text.data(), text.size());
   const bool complete = written == static_cast<ssize_t>(text.size());
   if (::close(fd) != 0 || !complete) {
+    std::string why = cannot_be_written(path);
     ::unlink(path.c_str());
-    return path + ": cannot write";
+    return why;
   }
   return {};
 }

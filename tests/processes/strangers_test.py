@@ -1,6 +1,7 @@
 """Valid and hostile: names, numbers and stamps of strangers, logs that nobody reads, terminals."""
 import fcntl
 import os
+import resource
 import subprocess
 import time
 import unittest
@@ -168,7 +169,14 @@ class Terminals(unittest.TestCase):
                                      stderr=subprocess.PIPE)
                     _, err = tool.communicate(timeout=20)
                 self.assertEqual(tool.returncode, 1, command)
-                self.assertIn("cannot be written", err)
+                self.assertIn("standard output: cannot be written: No space left on device", err)
+            # A bound of a file's size is a small full disk.
+            recorder = bus.start(TOOL, "record", bus.folder / "r.recording", "--results", bus.results, "--seconds", "5",
+                                 stderr=subprocess.PIPE, restore_signals=False,
+                                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100)))
+            _, err = recorder.communicate(timeout=20)
+            self.assertEqual(recorder.returncode, 1)
+            self.assertIn("r.recording: cannot be written: File too large", err)
 
 
 if __name__ == "__main__":

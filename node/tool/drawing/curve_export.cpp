@@ -157,7 +157,7 @@ std::string write_dxf(const CurveModel& model, const std::vector<ExportedPlace>&
   constexpr std::streamoff kEnd = 4;  // bytes: "EOF" and a line end
   std::string end(kEnd, ' ');
   if (written.tellg() >= kEnd) written.seekg(-kEnd, std::ios::end).read(end.data(), kEnd);
-  return end.starts_with("EOF") ? "" : path + ": cannot be written";
+  return end.starts_with("EOF") ? "" : cannot_be_written(path);
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ int run(const RecordCommand& command) {
   RecordedMessage message;
   std::uint64_t recorded = 0;
   std::map<std::string, SequenceTracker> orders;  // by topic
-  bool good = true;
+  std::string why;                                // the file cannot be written
   Progress progress;
   progress.tell([&] { return command.file + ": waiting for messages"; });
   place.listen(stop_fd, end, [&](const TwoFrames& frames) {
@@ -95,8 +95,8 @@ int run(const RecordCommand& command) {
     message.frame_count = static_cast<std::uint32_t>(frames.frame_count);
     message.topic = frames.topic.to_string();
     message.payload = frames.payload.to_string();
-    good = writer.write(message);
-    recorded += good ? 1 : 0;
+    why = writer.write(message);
+    recorded += why.empty() ? 1 : 0;
     constexpr std::size_t kMostTopics = 10'000;  // a bound of memory: of any others nothing is told
     const bool is_told = orders.size() < kMostTopics || orders.count(message.topic) > 0;
     if (v1::Header header;
@@ -104,11 +104,11 @@ int run(const RecordCommand& command) {
       orders[message.topic].take(header.epoch(), header.seq());
     }
     progress.tell([&] { return command.file + ": " + counted(recorded, "message"); });
-    return good && (command.count == 0 || recorded < command.count);
+    return why.empty() && (command.count == 0 || recorded < command.count);
   });
   progress.end();
-  if (!good) {
-    return complain(command.file + ": cannot be written", kFailed);
+  if (!why.empty()) {
+    return complain(why, kFailed);
   }
   const std::string& endpoint =
       command.contacts.empty() ? command.connection.endpoint : command.contacts;
@@ -123,8 +123,8 @@ int run(const RecordCommand& command) {
               << " missing between them, as their numbers show";
   }
   std::cerr << "\n";
-  if (const std::string why = place.refusal(); !why.empty()) {
-    return complain("the recognizer at " + endpoint + " " + why, kFailed);
+  if (const std::string refusal = place.refusal(); !refusal.empty()) {
+    return complain("the recognizer at " + endpoint + " " + refusal, kFailed);
   }
   return kDone;
 }

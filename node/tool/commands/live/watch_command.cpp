@@ -15,6 +15,7 @@
 #include "node/client/result_subscriber.h"
 #include "node/files/printable.h"
 #include "node/files/quantity.h"
+#include "node/files/written_file.h"
 #include "node/process/clock.h"
 #include "node/process/stop_signals.h"
 #include "node/tool/commands/command.h"
@@ -288,7 +289,8 @@ class Watch {
       output_->refresh(now, silent_s, last);
       if (last || !std::cout) break;
     }
-    return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
+    const std::string why = flush_standard_output();
+    return why.empty() ? kDone : complain(why, kFailed);
   }
 
  private:

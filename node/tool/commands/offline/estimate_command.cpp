@@ -11,6 +11,7 @@
 #include "core/local/estimator.h"
 #include "core/recognition/samples/joined_runs.h"
 #include "node/files/counted.h"
+#include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/commands/file_flags.h"
 #include "node/tool/contact_groups.h"
@@ -145,15 +146,13 @@ int run(EstimateCommand& command) {
           refused.add(run, probe, window);
         }
         if (std::ferror(stdout) != 0) {
-          return complain("standard output: cannot be written", kFailed);
+          return complain(flush_standard_output(), kFailed);
         }
       }
     }
   }
   refused.tell();
-  if (std::fflush(stdout) != 0) {
-    return complain("standard output: cannot be written", kFailed);
-  }
+  if (const std::string why = flush_standard_output(); !why.empty()) return complain(why, kFailed);
   return refused.any() ? kFailed : kDone;
 }
 

@@ -176,8 +176,8 @@ int run(FitRequest& fit) {
     print(told, number, json, !fit.given_class.empty());
     code = std::max(code, write_files(fit, told, number));
   }
-  std::cout.flush();
-  return std::cout ? code : complain("standard output: cannot be written", kFailed);
+  const std::string unwritten = flush_standard_output();
+  return unwritten.empty() ? code : complain(unwritten, kFailed);
 }
 
 void add_output_flags(CLI::App& command, FitRequest& fit) {

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "node/files/printable.h"
+#include "node/files/written_file.h"
 #include "node/tool/commands/command.h"
 #include "node/tool/part_match.h"
 #include "node/tool/text/message_json.h"
@@ -35,8 +36,8 @@ int place_part(const std::string& part_file, const std::vector<FitInput>& inputs
       separator = "\n";
     }
   }
-  std::cout.flush();
-  return std::cout ? kDone : complain("standard output: cannot be written", kFailed);
+  const std::string why = flush_standard_output();
+  return why.empty() ? kDone : complain(why, kFailed);
 }
 
 }  // namespace palpate

@@ -149,6 +149,22 @@ TEST_F(SpoolTest, AFullDiskLeavesNoFileForEachMessage) {
   EXPECT_EQ(all_of(spool), numbers(10, 20));
 }
 
+TEST_F(SpoolTest, AFullDiskIsToldWithItsReason) {
+  Spool spool(folder_, kBound);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit full{20, before.rlim_max};  // room for a beginning, and for no message [bytes]
+  std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
+  spool.add("contact/f/", "0");
+  const std::string said = spool.error();
+  spool.add_before(spool.next_segment(), "contact/f/", "1");
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
+  for (const std::string& each : {said, spool.error()}) {
+    EXPECT_TRUE(each.ends_with(": cannot be written: File too large")) << each;
+  }
+}
+
 TEST_F(SpoolTest, WhatIsKeptAtTheEndComesBeforeWhatWasAddedSince) {
   {
     Spool spool(folder_, kBound);

@@ -217,11 +217,16 @@ class Files(unittest.TestCase):
             with open("/dev/full", "w") as full:
                 done = subprocess.run(list(map(str, command)), stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual(done.returncode, 1, command)
-            self.assertIn("cannot be written", done.stderr)
+            self.assertIn("standard output: cannot be written: No space left on device", done.stderr)
         os.symlink("/dev/full", self.folder / "plot.svg")
         code, _, err = run(TOOL, "fit", csv, "--plot", self.folder / "plot.svg")
         self.assertEqual(code, 1)
         self.assertIn("cannot be written: No space left on device", err)
+        for option in ("--csv", "--truth"):
+            files = {"--csv": self.folder / "s.csv", "--truth": self.folder / "s.json"} | {option: "/dev/full"}
+            code, _, err = run(SIM, SOURCE / "sim/scenes/line.textproto", *(word for pair in files.items() for word in pair))
+            self.assertEqual(code, 1)
+            self.assertIn("/dev/full: cannot be written: No space left on device", err)
 
 
 if __name__ == "__main__":

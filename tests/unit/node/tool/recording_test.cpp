@@ -39,7 +39,7 @@ class RecordingFile : public testing::Test {
   void write(int count) {
     RecordingWriter writer;
     ASSERT_EQ(writer.open(path_), "");
-    for (int i = 0; i < count; ++i) ASSERT_TRUE(writer.write(message_of(i)));
+    for (int i = 0; i < count; ++i) ASSERT_EQ(writer.write(message_of(i)), "");
   }
 
   struct Read {
@@ -103,8 +103,8 @@ TEST_F(RecordingFile, KeepsAnyBytesAsTheyCame) {
   {
     RecordingWriter writer;
     ASSERT_EQ(writer.open(path_), "");
-    ASSERT_TRUE(writer.write(message));
-    ASSERT_TRUE(writer.write(message_of(3)));
+    ASSERT_EQ(writer.write(message), "");
+    ASSERT_EQ(writer.write(message_of(3)), "");
   }
   const Read back = read();
   ASSERT_EQ(back.messages.size(), 2U);
