@@ -97,8 +97,10 @@ std::string attach(zmq::socket_t& socket, const Endpoint& endpoint, PathLock* lo
   const int rc = endpoint.bind ? zmq_bind(socket.handle(), endpoint.address.c_str())
                                : zmq_connect(socket.handle(), endpoint.address.c_str());
   if (rc == 0) return {};
+  const int error = zmq_errno();
   return "cannot " + std::string(endpoint.bind ? "bind" : "connect") + " to " + endpoint.address +
-         ": " + zmq_strerror(zmq_errno());
+         ": " + zmq_strerror(error) +
+         (error == ENODEV ? " (to bind, name an interface or an address, such as 127.0.0.1)" : "");
 }
 
 bool receive_now(zmq::socket_t& socket, TwoFrames& message) {

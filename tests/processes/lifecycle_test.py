@@ -62,6 +62,13 @@ class Lifecycle(unittest.TestCase):
             self.assertEqual(code, 1)
             self.assertIn(str(bus.folder), err)
 
+    def test_a_name_that_cannot_be_bound_is_told_with_what_can(self):
+        with Bus() as bus:
+            code, _, err = run(NODE, "--contacts", "tcp://localhost:*", "--results", f"ipc://{bus.folder}/results")
+            self.assertEqual(code, 1)
+            self.assertIn("cannot bind to tcp://localhost:*", err)
+            self.assertIn("name an interface or an address, such as 127.0.0.1", err)
+
     def test_a_configuration_file_and_its_errors(self):
         with Bus() as bus:
             config = bus.folder / "node.textproto"
