@@ -1,5 +1,5 @@
 // palpate-sim: plays scenes as the probes of a real cell would. Exit codes: 0 all played, 1 failed
-// at run time (no recognizer listens, a file cannot be written), 2 usage or an invalid scene.
+// at run time (no recognizer listens, a file cannot be written), 2 usage or bad input.
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -198,7 +198,10 @@ struct Player {
     if (!options.own_key.empty()) {
       Result<CurveClient> curve =
           client::read_curve_client(options.own_key, options.recognizer_key);
-      if (!curve) return failed(curve.error);
+      if (!curve) {
+        complain(curve.error);
+        return kUsage;
+      }
       publisher_options.curve = *curve.value;
     }
     client::ContactPublisher publisher(publisher_options);
@@ -304,7 +307,7 @@ int main(int argc, char** argv) {
   silence_protobuf();
   CLI::App app(
       "Simulates touch probes: publishes the contacts of scenes, or writes them to a file.\n"
-      "Exit codes: 0 all played (or stopped as asked), 1 failed at run time, 2 usage or bad scene.",
+      "Exit codes: 0 all played (or stopped as asked), 1 failed at run time, 2 usage or bad input.",
       "palpate-sim");
   app.set_version_flag("--version", PALPATE_VERSION);
   CommandLine options;

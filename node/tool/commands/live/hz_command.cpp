@@ -54,8 +54,11 @@ int run(const HzCommand& command) {
   if (!counts) {
     return complain(counts.error, kUsage);
   }
-  print(*counts.value);
-  return counts.value->empty()
+  if (!counts.value->refusal.empty()) {
+    return complain(counts.value->refusal, kFailed);
+  }
+  print(counts.value->by_topic);
+  return counts.value->by_topic.empty()
              ? complain("nothing heard on " + command.connection.endpoint, kFailed)
              : kDone;
 }

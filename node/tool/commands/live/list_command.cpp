@@ -24,11 +24,14 @@ int run(const ListCommand& command) {
   if (!counts) {
     return complain(counts.error, kUsage);
   }
-  for (const auto& [topic, count] : *counts.value) {
+  if (!counts.value->refusal.empty()) {
+    return complain(counts.value->refusal, kFailed);
+  }
+  for (const auto& [topic, count] : counts.value->by_topic) {
     std::printf("%s\t%llu messages\n", printable(topic).c_str(),
                 static_cast<unsigned long long>(count.messages));
   }
-  return counts.value->empty()
+  return counts.value->by_topic.empty()
              ? complain("nothing heard on " + command.connection.endpoint, kFailed)
              : kDone;
 }

@@ -16,10 +16,10 @@ constexpr std::size_t kMostTopics = 10'000;
 
 }  // namespace
 
-Result<std::map<std::string, TopicCount>> count_topics(
+Result<TopicCounts> count_topics(
     const Connection& connection,
     const std::function<bool(const std::map<std::string, TopicCount>&)>& until) {
-  using Counts = Result<std::map<std::string, TopicCount>>;
+  using Counts = Result<TopicCounts>;
   const auto curve = curve_of(connection);
   if (!curve) {
     return Counts::fail(curve.error);
@@ -37,22 +37,24 @@ Result<std::map<std::string, TopicCount>> count_topics(
   if (const std::string error = attach(socket, *endpoint.value); !error.empty()) {
     return Counts::fail(error);
   }
-  std::map<std::string, TopicCount> counts;
+  TopicCounts counts;
   std::vector<zmq::pollitem_t> items{{socket.handle(), 0, ZMQ_POLLIN, 0}};
   TwoFrames message;
-  while (!until(counts)) {
+  while (!until(counts.by_topic)) {
     constexpr int kStepMs = 50;
     poll(items, kStepMs);
     if (const std::string& refusal = handshakes.refusal(); !refusal.empty()) {
-      return Counts::fail("the recognizer at " + connection.endpoint + " " + refusal);
+      counts.refusal = "the recognizer at " + connection.endpoint + " " + refusal;
+      break;
     }
     constexpr int kMostAtOnce = 1000;
     const auto turn = std::chrono::steady_clock::now() + std::chrono::milliseconds(kStepMs);
     drain(socket, message, kMostAtOnce, turn, [&](const TwoFrames&) {
       std::string topic = message.topic.to_string();
-      if (counts.size() >= kMostTopics && !counts.contains(topic)) topic = "(further topics)";
-      counts[topic].take({message.payload.data<char>(), message.payload.size()},
-                         std::chrono::steady_clock::now());
+      if (counts.by_topic.size() >= kMostTopics && !counts.by_topic.contains(topic))
+        topic = "(further topics)";
+      counts.by_topic[topic].take({message.payload.data<char>(), message.payload.size()},
+                                  std::chrono::steady_clock::now());
     });
   }
   return Counts::ok(std::move(counts));

@@ -10,9 +10,14 @@
 
 namespace palpate {
 
+struct TopicCounts {
+  std::map<std::string, TopicCount> by_topic;
+  std::string refusal;  ///< why the recognizer refuses us, which ends the count; empty if not
+};
+
 /// Subscribes to everything and counts, until `until` says so (asked after every message and at
-/// least every 50 ms).
-Result<std::map<std::string, TopicCount>> count_topics(
+/// least every 50 ms). Fails where the connection cannot be one.
+Result<TopicCounts> count_topics(
     const Connection& connection,
     const std::function<bool(const std::map<std::string, TopicCount>&)>& until);
 
