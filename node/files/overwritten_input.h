@@ -32,15 +32,16 @@ inline std::string overwrites_input(const std::string& output,
 }
 
 /// What is wrong if two of `outputs` are one file, by whatever name; else nothing. Empty paths are
-/// none; "-" is standard output.
+/// none, nor are devices and pipes, such as /dev/null; "-" is standard output.
 inline std::string overwrites_output(std::span<const std::string> outputs) {
   std::error_code none;
   const auto is_same = [&](const std::string& a, const std::string& b) {
+    if (a.empty() || b.empty() || std::filesystem::is_other(a, none)) return false;
     return std::filesystem::weakly_canonical(a, none) == std::filesystem::weakly_canonical(b, none);
   };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
-      if (!outputs[i].empty() && !outputs[k].empty() && is_same(outputs[i], outputs[k])) {
+      if (is_same(outputs[i], outputs[k])) {
         return printable_path(outputs[i]) +
                ": not written: two outputs have this name; give one of them another";
       }

@@ -198,6 +198,8 @@ class Files(unittest.TestCase):
             self.assertEqual((code, out), (2, ""), (command, err))
             self.assertIn("two outputs have this name", err)
         self.assertFalse((self.folder / "b.svg").exists())
+        code, _, err = run(SIM, scene, "--csv", "/dev/null", "--truth", "/dev/null")
+        self.assertEqual((code, err), (0, ""))
         before = part.read_bytes()
         with part.open() as stdin:
             done = subprocess.run([TOOL, "fit", "-", "--export", part], stdin=stdin, capture_output=True, text=True)
