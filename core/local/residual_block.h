@@ -34,9 +34,9 @@ class ResidualBlock {
   /// Fits of so many samples allocate nothing.
   void reserve(std::size_t samples) { lanes_.reserve((samples + kWidth - 1) / kWidth); }
 
-  /// Fits a polynomial of `degree` <= kDegree to the samples whose `use` is set (empty: all). Needs
-  /// more than kUnknowns of them. `noise`: by sample; empty: 1. Returns Ok, or the reason of the
-  /// failure. O(samples).
+  /// Fits a polynomial of `degree` to the samples whose `use` is set (empty: all). Needs more than
+  /// kUnknowns of them, and more than the degree's. `noise`: by sample; empty: 1. Returns Ok, or
+  /// the reason of the failure. O(samples).
   LocalStatus fit(std::span<const Vec2> samples, std::span<const std::uint8_t> use = {},
                   int degree = kDegree, std::span<const RelativeNoise> noise = {});
 

@@ -10,6 +10,7 @@
 #include "core/local/spikes/block_survey.h"
 #include "core/local/spikes/jumps.h"
 #include "core/local/spikes/spike_search.h"
+#include "core/local/spikes/spikes_at_ends.h"
 #include "core/numerics/probability/normal_law.h"
 
 namespace palpate {
@@ -141,6 +142,14 @@ class SpikePasses {
         last_found_(kept_.samples.size()) {}
 
   void run() {
+    search_all();
+    if (survey_.status == LocalStatus::Ok && kept_.samples.size() >= kFewestSamples) {
+      drop_at_ends();
+    }
+  }
+
+ private:
+  void search_all() {
     constexpr int kMostPasses = 8;  // a bound of time: each but those by longer blocks finds some
     for (int pass = 0; pass < kMostPasses && kept_.samples.size() >= kFewestSamples; ++pass) {
       if (doublings_ == 0) {
@@ -157,7 +166,19 @@ class SpikePasses {
     }
   }
 
- private:
+  void drop_at_ends() {
+    const std::size_t count = kept_.samples.size();
+    const SpikesAtEnds found =
+        find_spikes_at_ends({kept_.samples, kept_.noise, {}}, survey_.length, result_->sigma_m,
+                            result_->threshold, cusps_, work_);
+    if (found.first + found.last > 0) {
+      std::vector<std::uint8_t> is_spike(count);
+      std::fill_n(is_spike.begin(), found.first, 1);
+      std::fill_n(is_spike.rbegin(), found.last, 1);
+      kept_.drop(is_spike, &result_->indices);
+    }
+  }
+
   BlockSurvey surveyed() const {
     return survey_blocks({kept_.samples, kept_.noise, on_path_}, sigma_m_, result_->threshold,
                          cusps_, work_);

@@ -45,6 +45,7 @@ struct Spikes {
 ///    parabola, which spikes in up to half of the block cannot bend (least_median_parabola.h).
 /// 3. The test of the deletion residual against z (spike_search.h), for samples inside and outside
 ///    that fit. Steps 1 to 3 are repeated without the spikes found.
+/// Last, the first and last samples of what is left are tested by longer blocks (spikes_at_ends.h).
 ///
 /// A corner, a step or a bend is form and not a spike: a block does not judge samples beyond its
 /// own inliers, and a block that turns by more than 45 degrees judges nothing. Samples that are not
