@@ -41,6 +41,14 @@ std::vector<StoredPatch> numbered(std::vector<StoredPatch> patches) {
   return patches;
 }
 
+std::vector<StoredPatch> without_repeated_touches(std::vector<StoredPatch> patches,
+                                                  double default_sigma_m) {
+  std::vector<StoredPatch> clean = patches;
+  merge_repeated_touches(default_sigma_m, &patches, &clean);
+  EXPECT_EQ(patches, clean);
+  return clean;
+}
+
 std::size_t places_of(std::vector<StoredPatch> patches, double default_sigma_m = 0.0) {
   return without_repeated_touches(numbered(std::move(patches)), default_sigma_m).size();
 }
@@ -121,6 +129,31 @@ TEST(RepeatedTouches, OfDifferentTipsStayAsTheyAre) {
   EXPECT_EQ(places_of({touch_at({0.0, 0.0}), by_tip}), 2U);
   EXPECT_EQ(places_of({touch_at({0.0, 0.0}), sided}), 2U);
   EXPECT_EQ(places_of({by_tip, sided, by_tip, sided}), 2U);
+}
+
+// Of a stroke whose other samples are spikes one is left, beside a touch; of a touch that is one,
+// nothing. They were merged on one side alone, and all later patches stood beside others.
+TEST(RepeatedTouches, AreThoseThatNoSpikesHaveMade) {
+  StoredPatch stroke = touch_at({0.0, 0.0});
+  stroke.samples.push_back({{100.0 * kOneSigma, 0.0}, kOneSigma, 1.0});
+  StoredPatch spike = touch_at({0.0, 0.0});
+  spike.samples.clear();
+  const StoredPatch touch = touch_at({0.0, 0.0});
+  const StoredPatch last = touch_at({1.0, 0.0});
+  std::vector<StoredPatch> moved = numbered({stroke, touch, touch, touch, last});
+  std::vector<StoredPatch> clean = numbered({touch, touch, spike, touch, last});
+  merge_repeated_touches(0.0, &moved, &clean);
+  ASSERT_EQ(moved.size(), 4U);
+  ASSERT_EQ(clean.size(), 4U);
+  for (std::size_t p = 0; p < clean.size(); ++p) {
+    EXPECT_EQ(moved[p].context.patch, clean[p].context.patch) << p;
+  }
+  EXPECT_EQ(moved[0].samples.size(), 2U);
+  EXPECT_EQ(clean[0].samples.size(), 1U);
+  EXPECT_EQ(clean[1].samples.front().weight, 2.0);
+  EXPECT_EQ(moved[1], clean[1]);
+  EXPECT_TRUE(clean[2].samples.empty());
+  EXPECT_EQ(clean[3].context.patch, 4U);
 }
 
 TEST(RepeatedTouches, OfOtherNormalsStayAsTheyAre) {

@@ -199,8 +199,7 @@ void CleanPatches::update(std::span<const StoredPatch> patches, const CleanOptio
     moved_.insert(moved_.end(), seen.moved.begin(), seen.moved.end());
     clean_.insert(clean_.end(), seen.clean.begin(), seen.clean.end());
   }
-  moved_ = without_repeated_touches(std::move(moved_), default_sigma_m);
-  clean_ = without_repeated_touches(std::move(clean_), default_sigma_m);
+  merge_repeated_touches(default_sigma_m, &moved_, &clean_);
 }
 
 std::size_t CleanPatches::dwelling_count() const {

@@ -101,6 +101,7 @@ std::optional<std::vector<StoredPatch>> with_runs_at_ends(std::span<const Stored
         ++k;
       }
     }
+    assert(end > begin);
     const auto goes_on = [&](std::size_t from, std::size_t to) {
       bool goes = true;
       for (std::size_t i = from; i < to; ++i) {

@@ -1,8 +1,10 @@
 #include "core/recognition/samples/cleaned/repeated_touches.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "core/recognition/samples/cleaned/chained_touches.h"
 #include "core/recognition/samples/merged_samples.h"
@@ -58,32 +60,42 @@ StoredPatch mean_of(std::span<const StoredPatch> patches, const Indices& touches
 
 }  // namespace
 
-std::vector<StoredPatch> without_repeated_touches(std::vector<StoredPatch> patches,
-                                                  double default_sigma_m) {
-  std::vector<Indices> places(patches.size());  // by the first touch of each
-  std::vector<bool> is_taken(patches.size(), false);
+void merge_repeated_touches(double default_sigma_m, std::vector<StoredPatch>* moved,
+                            std::vector<StoredPatch>* clean) {
+  assert(moved->size() == clean->size());
+  std::vector<StoredPatch> touches;
+  Indices patch_of;
+  for (std::size_t p = 0; p < moved->size(); ++p) {
+    if ((*moved)[p].samples.size() == 1 && (*clean)[p].samples.size() == 1) {
+      touches.push_back((*clean)[p]);
+      patch_of.push_back(p);
+    }
+  }
+  std::vector<bool> is_taken(moved->size(), false);  // by the mean of others
   bool is_any = false;
-  for (Indices& chain : chained_touches(patches, default_sigma_m)) {
-    if (!is_one_place(patches, chain, default_sigma_m)) {
+  for (const Indices& chain : chained_touches(touches, default_sigma_m)) {
+    if (!is_one_place(touches, chain, default_sigma_m)) {
       continue;
     }
     is_any = true;
-    for (const std::size_t p : chain) is_taken[p] = true;
-    places[chain.front()] = std::move(chain);
+    for (const std::size_t touch : chain) is_taken[patch_of[touch]] = true;
+    const std::size_t first = patch_of[chain.front()];
+    is_taken[first] = false;
+    (*moved)[first] = (*clean)[first] = mean_of(touches, chain);
   }
   if (!is_any) {
-    return patches;
+    return;
   }
-  std::vector<StoredPatch> result;
-  result.reserve(patches.size());
-  for (std::size_t p = 0; p < patches.size(); ++p) {
-    if (!places[p].empty()) {
-      result.push_back(mean_of(patches, places[p]));
-    } else if (!is_taken[p]) {
-      result.push_back(std::move(patches[p]));
+  for (std::vector<StoredPatch>* patches : {moved, clean}) {
+    std::size_t kept = 0;
+    for (std::size_t p = 0; p < patches->size(); ++p) {
+      if (!is_taken[p]) {
+        if (kept != p) (*patches)[kept] = std::move((*patches)[p]);
+        ++kept;
+      }
     }
+    patches->resize(kept);
   }
-  return result;
 }
 
 }  // namespace palpate

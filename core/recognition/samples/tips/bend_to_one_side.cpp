@@ -3,11 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <optional>
 #include <utility>
 #include <vector>
-
-#include "core/recognition/samples/tips/tip_sides.h"
 
 namespace palpate {
 
