@@ -97,6 +97,17 @@ bool Spool::begin_segment() {
   return true;
 }
 
+bool Spool::write_or_lose(std::optional<RecordingWriter>& writer, std::string_view topic,
+                          std::string_view payload) {
+  const std::string why =
+      writer->write({unix_time_ns(), 2, std::string(topic), std::string(payload)});
+  if (why.empty()) return true;
+  error_ = why;
+  ++lost_;
+  writer.reset();
+  return false;
+}
+
 void Spool::add_before(std::uint64_t next_segment, std::string_view topic,
                        std::string_view payload) {
   const std::uint64_t size = kRecordBytes + topic.size() + payload.size();
@@ -115,15 +126,7 @@ void Spool::add_before(std::uint64_t next_segment, std::string_view topic,
     ++lost_;
     return;
   }
-  const std::string why =
-      kept_writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)});
-  if (!why.empty()) {
-    error_ = why;
-    kept_writer_.reset();
-    ++lost_;
-    return;
-  }
-  bytes_ += size;
+  if (write_or_lose(kept_writer_, topic, payload)) bytes_ += size;
 }
 
 void Spool::add(std::string_view topic, std::string_view payload) {
@@ -137,14 +140,9 @@ void Spool::add(std::string_view topic, std::string_view payload) {
     ++lost_;
     return;
   }
-  const std::string why =
-      writer_->write({unix_time_ns(), 2, std::string(topic), std::string(payload)});
-  if (!why.empty()) {
-    error_ = why;
-    ++lost_;
+  if (!write_or_lose(writer_, topic, payload)) {
     // The part of the record on disk ends this file; the next record gets a new file.
     segments_.rbegin()->second.is_closed = true;
-    writer_.reset();
     return;
   }
   error_.clear();

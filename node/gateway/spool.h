@@ -70,6 +70,9 @@ class Spool {
   bool begin_segment();
   void drop_oldest();
   void remove_where_done(std::uint64_t segment);
+  /// Writes a message. One that is not is counted as lost, and the writer is closed.
+  bool write_or_lose(std::optional<RecordingWriter>& writer, std::string_view topic,
+                     std::string_view payload);
 
   std::string folder_;
   std::uint64_t most_bytes_;

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <utility>
 
-#include "core/recognition/samples/tips/bend_to_one_side.h"
 #include "core/recognition/samples/tips/tip_sides.h"
 #include "core/recognition/weigh/tip_directions.h"
 
@@ -74,10 +72,8 @@ DirectedTouches directed_touches(std::span<const StoredPatch> patches, const Sid
   if (result.bends.empty()) {
     result.bends = turns_of(result.touches);
   }
-  if (have_other_radii(result.touches)) {
-    if (are_strokes(result.touches)) {
-      result.senses = senses_in_common(result.touches);
-    }
+  if (have_other_radii(result.touches) && are_strokes(result.touches)) {
+    result.senses = senses_in_common(result.touches);
   }
   auto bend = result.bends.begin();
   for (const StoredPatch& patch : patches) {

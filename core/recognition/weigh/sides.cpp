@@ -129,11 +129,6 @@ class TriedWays {
   std::vector<SideChoice> take() && { return std::move(choices_); }
 
  private:
-  bool any_fits_all() const {
-    return std::any_of(choices_.begin(), choices_.end(),
-                       [&](const SideChoice& choice) { return fits_all(choice, by_); });
-  }
-
   /// Whether any patch states its side: the others touch the same wall of a conic from there.
   bool any_side_is_known() const {
     const std::vector<int> known = known_sides(patches_, by_.arcs.smooth.reduced);

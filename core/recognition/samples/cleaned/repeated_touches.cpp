@@ -72,19 +72,14 @@ void merge_repeated_touches(double default_sigma_m, std::vector<StoredPatch>* mo
     }
   }
   std::vector<bool> is_taken(moved->size(), false);  // by the mean of others
-  bool is_any = false;
   for (const Indices& chain : chained_touches(touches, default_sigma_m)) {
     if (!is_one_place(touches, chain, default_sigma_m)) {
       continue;
     }
-    is_any = true;
     for (const std::size_t touch : chain) is_taken[patch_of[touch]] = true;
     const std::size_t first = patch_of[chain.front()];
     is_taken[first] = false;
     (*moved)[first] = (*clean)[first] = mean_of(touches, chain);
-  }
-  if (!is_any) {
-    return;
   }
   for (std::vector<StoredPatch>* patches : {moved, clean}) {
     std::size_t kept = 0;
