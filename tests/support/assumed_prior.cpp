@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <utility>
 
 #include "core/curves/curve.h"
 #include "core/curves/pose2.h"
+#include "core/recognition/prior/arms.h"
 #include "core/recognition/prior/touched_prior.h"
 #include "tests/support/test_rng.h"
 
@@ -18,7 +20,8 @@ namespace {
 constexpr int kSamples = 111;
 
 /// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction and size, and a hyperbola's.
+/// prior's factors are independent, but for an ellipse's direction and size, and where half is
+/// arms.
 class CoordinateLaw {
  public:
   CoordinateLaw(Chart chart, int k) {
@@ -54,24 +57,36 @@ class CoordinateLaw {
   std::vector<double> sums_;
 };
 
-/// A hyperbola's coordinates of one of the halves of its prior.
-TouchedVector hyperbola_of(HyperbolaHalf half, std::mt19937_64& rng) {
-  TouchedVector z = TouchedVector::Zero();
+/// The coordinates of a class with arms, touched about its bend or on them.
+TouchedVector drawn_touched_at(CurveClass curve_class, TouchedAt at, std::mt19937_64& rng) {
   // By the inverses of their distribution functions: angles, and the squared hyperbolic secant.
   const double log_of_size = std::atanh(uniform(rng, -1.0, 1.0));
-  constexpr int kFreedom = 6;
-  constexpr double kScale = 2.0;
-  const double place =
-      kScale / std::sqrt(kFreedom) * std::student_t_distribution<double>(kFreedom)(rng);
-  if (half == HyperbolaHalf::Tip) {
-    z[1] = 1.0 + std::tan(uniform(rng, -0.25 * kPi, 0.5 * kPi));  // Cauchy's above 0
-    z[2] = place;
-  } else {
-    const double square = uniform(rng, 0.0, 1.0);  // of b / c
-    z[1] = square / (1.0 - square);
-    z[2] = place / std::sqrt(square);  // w = e y / p = c / b y / b
+  const auto student = [&](int freedom, double scale) {
+    return scale / std::sqrt(freedom) * std::student_t_distribution<double>(freedom)(rng);
+  };
+  const bool bend = at == TouchedAt::Bend;
+  constexpr double kHalfOfFour = 2.7001;  // scale by which half lies beyond 1, of 4 degrees
+  TouchedVector z = TouchedVector::Zero();
+  switch (curve_class) {
+    case CurveClass::Hyperbola:
+      if (bend) {
+        z[1] = 1.0 + std::tan(uniform(rng, -0.25 * kPi, 0.5 * kPi));  // Cauchy's above 0
+        z[2] = student(6, 2.0);
+      } else {
+        const double square = uniform(rng, 0.0, 1.0);  // of b / c
+        z[1] = square / (1.0 - square);
+        z[2] = student(6, 2.0) / std::sqrt(square);  // w = e y / p = c / b y / b
+      }
+      break;
+    case CurveClass::Parabola:
+      z[1] = bend ? student(6, 2.0) : student(2, 3.0 * std::numbers::sqrt3);
+      break;
+    default:  // cubical parabola
+      z[1] = bend ? student(6, 2.0) : student(4, kHalfOfFour);
+      z[2] = bend ? student(10, 1.4) : student(4, kHalfOfFour);
+      break;
   }
-  z[0] = expected_log_length(half, z) + log_of_size;
+  z[0] = expected_log_length(curve_class, at, z) + log_of_size;
   return z;
 }
 
@@ -80,8 +95,8 @@ class ChartLaw {
  public:
   explicit ChartLaw(Chart chart) : chart_(chart) {
     for (int k = 0; k < shape_coordinates(chart.curve_class); ++k) {
-      if (chart.curve_class == CurveClass::Hyperbola) {
-        break;  // drawn by halves
+      if (has_arms(chart.curve_class) && !chart.as_arc) {
+        break;  // drawn below
       }
       if (chart.curve_class != CurveClass::Ellipse || k == 0) {
         coordinates_.emplace_back(chart, k);
@@ -106,8 +121,9 @@ class ChartLaw {
       } while (uniform(rng, 0.0, 1.0) > speed());
       z[2] = std::atan2(std::sqrt(m) * std::cos(angle), -std::sin(angle));
     }
-    if (chart_.curve_class == CurveClass::Hyperbola) {
-      z = hyperbola_of(random_sign(rng) > 0.0 ? HyperbolaHalf::Tip : HyperbolaHalf::Wedge, rng);
+    if (has_arms(chart_.curve_class) && !chart_.as_arc) {
+      const bool on_arms = uniform(rng, 0.0, 1.0) < kShareOfArms;
+      z = drawn_touched_at(chart_.curve_class, on_arms ? TouchedAt::Arms : TouchedAt::Bend, rng);
     }
     TouchedShape like;
     like.values[0] = random_sign(rng);

@@ -34,7 +34,8 @@ void start_semi_cubical_from_spline(const FitData& reduced, double out_of_reach,
 PolynomialFit semi_cubical_from(const PolynomialFit& spline, const FitData& reduced,
                                 double out_of_reach, WorkBudget& work);
 
-/// The same of the cubical parabola, of a spline whose vertex is far away: along its axis.
+/// The same of the cubical parabola, of a spline whose vertex is far away: next to it, and along
+/// its axis.
 void start_cubical_from_spline(const FitData& reduced, double out_of_reach, PolynomialFits* fits,
                                WorkBudget& work);
 

@@ -19,7 +19,7 @@ namespace {
 
 /// One more finds little that these do not (tests/bench/accuracy/bench_prior.cpp), and each costs a
 /// search.
-constexpr std::size_t kMostStarts = 3;
+constexpr std::size_t kMostStarts = 4;
 
 /// A shape of the prior with one of the senses and sides that it stands for.
 struct Sided {
@@ -82,14 +82,16 @@ Sided arc_like(double curvature, double rate) {
   return shape;
 }
 
-/// Which arm, side and sense of travel: between them no way leads downhill.
+/// Which arm, side and sense of travel, and on which side of the inflection's normal a cubical
+/// parabola's axis lies: between them no way leads downhill, or a long one.
 std::size_t sector_of(CurveClass curve_class, const Sided& shape) {
   constexpr int kBend = 3;  // the spline's c
   const int place = place_coordinate(curve_class);
+  const bool leans = curve_class == CurveClass::CubicalParabola && shape.z[1] > 0.0;
   return (place >= 0 && shape.z[place] > 0.0 ? 1U : 0U) + (shape.z[kBend] > 0.0 ? 2U : 0U) +
-         (shape.travel > 0.0 ? 4U : 0U) + (shape.leading > 0.0 ? 8U : 0U);
+         (shape.travel > 0.0 ? 4U : 0U) + (shape.leading > 0.0 ? 8U : 0U) + (leans ? 16U : 0U);
 }
-constexpr std::size_t kSectors = 16;
+constexpr std::size_t kSectors = 32;
 
 double speed_at(const Curve& curve, double t) { return derivatives(curve, t).first.norm(); }
 
@@ -245,7 +247,8 @@ std::size_t arm_of(const Touch& along, const Touch& touch, const TouchedCurve& m
   }
   switch (touch.curve_class) {
     case CurveClass::CubicalParabola:  // half a turn takes it to itself
-      return (with == ahead ? 1U : 0U) + (touch.shape.values[0] > 0.0 ? 2U : 0U);
+      return (with == ahead ? 1U : 0U) + (touch.shape.values[0] > 0.0 ? 2U : 0U) +
+             (mode.z[1] > 0.0 ? 4U : 0U);
     case CurveClass::SemiCubicalParabola:
     case CurveClass::CubicSpline:
       return (with ? 1U : 0U) + (ahead ? 2U : 0U);

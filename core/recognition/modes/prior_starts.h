@@ -16,7 +16,7 @@ struct PriorStart {
 
 /// Shapes of the prior that bend like `fitted` where it was touched: as large as its curvature
 /// says, with about the rate of the curvature. One on each arm, side and sense of travel that the
-/// class has, the most probable first, three at most. None where `fitted` is straight there. A
+/// class has, the most probable first, four at most. None where `fitted` is straight there. A
 /// spline's first is an arc (arc_coordinates.h). `touch`: of the class; its tangent is the path's,
 /// either way.
 std::vector<PriorStart> prior_starts(const Touch& touch, CurveClass path_class,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/curves/curve.h"
+#include "core/recognition/prior/arms.h"
 #include "core/recognition/prior/touched_prior.h"
 
 namespace palpate {
@@ -56,27 +57,8 @@ struct Place {
   double rate = 1.0;
 };
 
-/// A hyperbola of one half of its prior, of a point of the unit square.
-Place place_of_half(HyperbolaHalf half, const std::array<double, 3>& u) {
-  const TouchedVector scale = 2.0 * prior_widths({CurveClass::Hyperbola}, TouchedVector::Zero());
-  const Mapped place = one_side(u[1], scale[2]);
-  Place result;
-  if (half == HyperbolaHalf::Tip) {
-    const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
-    result.z.segment<2>(1) << 1.0 + away.value, place.value;
-    result.rate = away.rate * place.rate;
-  } else {
-    const Mapped root = one_side(u[0], 1.0);  // of m: the tangent of half the angle
-    const double w_over_place = std::hypot(1.0, root.value) / root.value;
-    result.z.segment<2>(1) << root.value * root.value, w_over_place * place.value;
-    result.rate = 2.0 * root.value * root.rate * w_over_place * place.rate;
-  }
-  result.z[0] = expected_log_length(half, result.z);
-  return result;
-}
-
 /// Of a point of the unit cube. Dense where curvature passes through 0.
-Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
+Place place_of_bend(CurveClass curve_class, const std::array<double, 3>& u) {
   Place place;
   place.z = prior_centre({curve_class});
   // Twice the width of a normal law as high is where the tails begin.
@@ -95,12 +77,17 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
       const double x = std::sin(angle);
       const double y = ratio * std::cos(angle);
       set(2, {std::atan2(y, x), 0.5 * kPi * part.rate * ratio / (x * x + y * y)});
-      place.z[0] = expected_log_length(curve_class, place.z);
       break;
     }
     case CurveClass::Parabola:
       set(1, one_side(u[0], scale[1]));
       break;
+    case CurveClass::Hyperbola: {
+      const Mapped away = tangent(u[0], -0.25 * kPi, 0.5 * kPi, 1.0);  // of m from 1, m > 0
+      set(1, {1.0 + away.value, away.rate});
+      set(2, one_side(u[1], scale[2]));
+      break;
+    }
     case CurveClass::CubicalParabola:
     case CurveClass::SemiCubicalParabola:
       set(1, everywhere(u[0], scale[1]));
@@ -122,11 +109,36 @@ Place place_at(CurveClass curve_class, const std::array<double, 3>& u) {
   return place;
 }
 
-/// The shapes of a lattice's points, placed by `place_at_point`, of which each has as much of the
-/// prior as `log_prior_at` says. Their weights sum to `share`.
-template <typename PlaceAt, typename LogPriorAt>
-std::vector<PriorShape> shapes_of(CurveClass curve_class, double share,
-                                  const PlaceAt& place_at_point, const LogPriorAt& log_prior_at) {
+/// The same of a part that is touched on its arms.
+Place place_on_arms(CurveClass curve_class, const std::array<double, 3>& u) {
+  Place place;
+  const auto set = [&](int k, const Mapped& mapped) {
+    place.z[k] = mapped.value;
+    place.rate *= mapped.rate;
+  };
+  const auto scale = [&](int k) { return 2.0 * width_on_arms(curve_class, k); };
+  switch (curve_class) {
+    case CurveClass::Parabola:
+      set(1, one_side(u[0], scale(1)));
+      break;
+    case CurveClass::Hyperbola: {
+      const Mapped root = one_side(u[0], 1.0);  // of m: the tangent of half the angle
+      const double w_over_place = std::hypot(1.0, root.value) / root.value;
+      const Mapped at = one_side(u[1], scale(2));  // y / b
+      set(1, {root.value * root.value, 2.0 * root.value * root.rate});
+      set(2, {w_over_place * at.value, w_over_place * at.rate});
+      break;
+    }
+    default:
+      set(1, everywhere(u[0], scale(1)));
+      set(2, one_side(u[1], scale(2)));
+      break;
+  }
+  return place;
+}
+
+/// The shapes of a lattice's points of parts touched there. Their weights sum to `share`.
+std::vector<PriorShape> shapes_of(CurveClass curve_class, TouchedAt where, double share) {
   const int own = shape_coordinates(curve_class);
   const Lattice lattice = lattice_of(own - 1);
   const TouchedShape like{Eigen::Vector3d::Ones(), 0.0};
@@ -139,7 +151,9 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class, double share,
       part = at - std::floor(at);
       at = lattice.generator * part;
     }
-    const Place place = place_at_point(u);
+    Place place =
+        where == TouchedAt::Bend ? place_of_bend(curve_class, u) : place_on_arms(curve_class, u);
+    place.z[0] = expected_log_length(curve_class, where, place.z);
     const auto shape = shape_at({curve_class}, place.z, like);
     const auto curve = shape ? make_curve(curve_class, shape->values) : std::nullopt;
     if (!curve || !(place.rate > 0.0)) {
@@ -147,8 +161,8 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class, double share,
     }
     const LocalGeometry local = geometry(*curve, shape->t);
     const TouchedVector widths = prior_widths({curve_class}, place.z);
-    const double weight =
-        place.rate * std::exp(log_prior_at(place.z)) / widths.segment(1, own - 1).prod();
+    const double weight = place.rate * std::exp(log_prior_touched_at(curve_class, where, place.z)) /
+                          widths.segment(1, own - 1).prod();
     if (std::isfinite(local.kappa) && std::isfinite(local.kappa_s) && std::isfinite(weight)) {
       shapes.push_back({place.z, local.kappa, local.kappa_s, weight});
       sum += weight;
@@ -164,18 +178,12 @@ std::vector<PriorShape> shapes_of(CurveClass curve_class, double share,
 }
 
 std::vector<PriorShape> shapes_of(CurveClass curve_class) {
-  if (curve_class != CurveClass::Hyperbola) {
-    return shapes_of(
-        curve_class, 1.0, [&](const auto& u) { return place_at(curve_class, u); },
-        [&](const TouchedVector& z) { return log_prior({curve_class}, z); });
+  if (!has_arms(curve_class)) {
+    return shapes_of(curve_class, TouchedAt::Bend, 1.0);
   }
-  std::vector<PriorShape> shapes;
-  for (const HyperbolaHalf half : {HyperbolaHalf::Tip, HyperbolaHalf::Wedge}) {
-    const auto of_half = shapes_of(
-        curve_class, 0.5, [&](const auto& u) { return place_of_half(half, u); },
-        [&](const TouchedVector& z) { return log_prior_of_half(half, z); });
-    shapes.insert(shapes.end(), of_half.begin(), of_half.end());
-  }
+  std::vector<PriorShape> shapes = shapes_of(curve_class, TouchedAt::Bend, 1.0 - kShareOfArms);
+  const auto on_arms = shapes_of(curve_class, TouchedAt::Arms, kShareOfArms);
+  shapes.insert(shapes.end(), on_arms.begin(), on_arms.end());
   return shapes;
 }
 

@@ -12,25 +12,23 @@ TouchedVector prior_widths(Chart chart, const TouchedVector& z);
 /// A maximum of the prior; of ellipses the circle.
 TouchedVector prior_centre(Chart chart);
 
-/// The z[0] with which a shape of these other coordinates is of the size that is expected.
-double expected_log_length(CurveClass curve_class, const TouchedVector& z);
-
 /// log of (length whose logarithm is z[0] / size of the part), whatever the rest of the shape: not
 /// of an ellipse.
 double log_length_over_size(CurveClass curve_class);
 
-/// The hyperbola's prior, half and half: touched about its tip, the size that of its bend; and a
-/// wedge with a rounded edge, the size half the distance c of its foci, b^2 / c^2 uniform, and
-/// places on its arms by y / b.
-enum class HyperbolaHalf { Tip, Wedge };
+/// Where on a part its touches lie. All of a class's prior is about its bend, or all but the share
+/// of arms (arms.h).
+enum class TouchedAt { Bend, Arms };
 
-/// As expected_log_length and log_prior, if all of the prior were this half.
-double expected_log_length(HyperbolaHalf half, const TouchedVector& z);
-double log_prior_of_half(HyperbolaHalf half, const TouchedVector& z);
+/// The z[0] with which a shape of these other coordinates is of the size that is expected.
+double expected_log_length(CurveClass curve_class, TouchedAt at, const TouchedVector& z);
+
+/// As log_prior, if all parts were touched there.
+double log_prior_touched_at(CurveClass curve_class, TouchedAt at, const TouchedVector& z);
 
 /// log of (prior density at z / density that a normal law of the widths has at its centre): 0 at
-/// the prior's centre, but the log of 1 / 2 for a spline that is no arc, and about that for a
-/// hyperbola.
+/// the prior's centre, but the log of 1 / 2 for a spline that is no arc, and about that of 0.9
+/// where there are arms.
 double log_prior(Chart chart, const TouchedVector& z);
 
 /// log of the prior's density by the coordinates of shape and place, up to a constant.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "core/curves/curve.h"
@@ -19,9 +20,47 @@ double student(int freedom, double scale, std::mt19937_64& rng) {
   return scale / std::sqrt(freedom) * std::student_t_distribution<double>(freedom)(rng);
 }
 
-/// A shape drawn from the prior as core/README.md states it, its size the expected one.
+/// log of a size of sqrt(20) half extents over the size of a shape of length 1.
+double log_of_length(double size) { return 0.5 * std::log(20.0) - std::log(size); }
+
+/// A shape touched far out on an arm, drawn as core/README.md states it, its size the expected one,
+/// half the diagonal of its box.
+TouchedVector drawn_on_arms(CurveClass curve_class, std::mt19937_64& rng) {
+  TouchedVector z = TouchedVector::Zero();
+  switch (curve_class) {
+    case CurveClass::Hyperbola: {  // a wedge, its place that of y / b
+      const double square = std::uniform_real_distribution<double>(0.0, 1.0)(rng);
+      z[1] = square / (1.0 - square);
+      z[2] = student(6, 2.0, rng) / std::sqrt(square);
+      z[0] = log_of_length(std::sqrt(1.0 + z[1]) / z[1]);
+      break;
+    }
+    case CurveClass::Parabola: {
+      z[1] = student(2, 3.0 * std::numbers::sqrt3, rng);
+      const double end = std::hypot(3.0, z[1]);
+      z[0] = log_of_length(0.5 * std::hypot(0.5 * end * end, 2.0 * end));
+      break;
+    }
+    default: {  // cubical parabola
+      z[1] = student(4, 2.7001, rng);
+      z[2] = student(4, 2.7001, rng);
+      const double end = std::hypot(1.0, z[2]);
+      z[0] = log_of_length(end * std::sqrt(1.0 + std::pow(end, 4) + z[1] * z[1]));
+      break;
+    }
+  }
+  return z;
+}
+
+/// A shape drawn from the prior, its size the expected one.
 TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const bool has_arms = curve_class == CurveClass::Parabola ||
+                        curve_class == CurveClass::Hyperbola ||
+                        curve_class == CurveClass::CubicalParabola;
+  if (has_arms && uniform(rng) < 0.1) {
+    return drawn_on_arms(curve_class, rng);
+  }
   TouchedVector z = prior_centre({curve_class});
   switch (curve_class) {
     case CurveClass::Ellipse: {
@@ -34,20 +73,12 @@ TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
       z[2] = std::atan2(std::sqrt(z[1]) * std::cos(angle), -std::sin(angle));
       break;
     }
-    case CurveClass::Hyperbola: {
-      const double place = student(6, 2.0, rng);
-      if (uniform(rng) < 0.5) {
-        do {
-          z[1] = 1.0 + std::tan(kPi * (uniform(rng) - 0.5));
-        } while (!(z[1] > 0.0));
-        z[2] = place;
-      } else {  // a wedge of the size sqrt(20), its place that of y / b
-        const double square = uniform(rng);
-        z.head<3>() << std::log(std::sqrt(20.0) * square / std::sqrt(1.0 - square)),
-            square / (1.0 - square), place / std::sqrt(square);
-      }
+    case CurveClass::Hyperbola:
+      do {
+        z[1] = 1.0 + std::tan(kPi * (uniform(rng) - 0.5));
+      } while (!(z[1] > 0.0));
+      z[2] = student(6, 2.0, rng);
       break;
-    }
     case CurveClass::Parabola:
       z[1] = student(6, 2.0, rng);
       break;

@@ -67,80 +67,149 @@ double integral_along(const LogPriorAt& log_prior_at, TouchedVector z, double wi
   return sum * (high - low) / kSteps / (width * std::sqrt(2.0 * kPi));
 }
 
-/// Integral over coordinate k of the prior's density, the others at the centre.
-double mass_along(Chart chart, const TouchedVector& centre, int k, double low, double high) {
-  const double at_centre = log_prior(chart, centre);
-  return integral_along([&](const TouchedVector& z) { return log_prior(chart, z) - at_centre; },
-                        centre, prior_widths(chart, centre)[k], k, low, high);
+/// Integral over coordinate k of the density of parts touched there. The size is the expected one:
+/// for all sizes together the density is a product.
+double mass_along(CurveClass curve_class, TouchedAt at, const TouchedVector& centre, int k,
+                  double low, double high) {
+  const auto log_prior_of = [&](TouchedVector z) {
+    if (k > 0) {
+      z[0] = expected_log_length(curve_class, at, z);
+    }
+    return log_prior_touched_at(curve_class, at, z);
+  };
+  TouchedVector start = centre;
+  start[0] = expected_log_length(curve_class, at, start);
+  return integral_along(log_prior_of, start, prior_widths({curve_class}, start)[k], k, low, high);
 }
 
+/// Cauchy's tails hold 2 / (pi kFar) beyond kFar scales.
+constexpr double kFar = 2000.0;
+constexpr double kTail = 2.0 * 2.0 / (3.14 * kFar) + 1e-4;
+
 TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
-  // Cauchy's tails hold 2 / (pi kFar) beyond kFar scales.
-  constexpr double kFar = 2000.0;
-  constexpr double kTail = 2.0 * 2.0 / (3.14 * kFar) + 1e-4;
   const double log_size = 0.5 * std::log(20.0);
-  const auto centre_of = [&](CurveClass curve_class) {
-    TouchedVector z = TouchedVector::Zero();
-    z[0] = log_size + log_length_over_size(curve_class);
-    return z;
+  const TouchedVector centre = TouchedVector::Zero();
+  const auto mass = [&](CurveClass curve_class, int k, double far) {
+    return mass_along(curve_class, TouchedAt::Bend, centre, k, -far, far);
   };
-  TouchedVector z = centre_of(CurveClass::Circle);
-  EXPECT_NEAR(mass_along({CurveClass::Circle}, z, 0, -40, 40), 1.0, 1e-6);
-  z = centre_of(CurveClass::Parabola);
-  EXPECT_NEAR(mass_along({CurveClass::Parabola}, z, 0, -40, 40), 1.0, 1e-6);
-  EXPECT_NEAR(mass_along({CurveClass::Parabola}, z, 1, -kFar, kFar), 1.0, kTail);
-  const TouchedVector spline = centre_of(CurveClass::CubicSpline);
-  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 0, -40, 40), 1.0, 1e-6);
-  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 1, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 2, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along({CurveClass::CubicSpline}, spline, 3, -kFar, kFar), 1.0, kTail);
-  for (int k = 0; k < 4; ++k) {
-    EXPECT_NEAR(mass_along({CurveClass::CubicSpline, true}, TouchedVector::Zero(), k, -kFar, kFar),
-                1.0, kTail);
+  EXPECT_NEAR(mass(CurveClass::Circle, 0, 40.0), 1.0, 1e-6);
+  EXPECT_NEAR(mass(CurveClass::Parabola, 0, 40.0), 1.0, 1e-6);
+  EXPECT_NEAR(mass(CurveClass::Parabola, 1, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass(CurveClass::CubicSpline, 0, 40.0), 1.0, 1e-6);
+  for (int k = 1; k < 4; ++k) {
+    EXPECT_NEAR(mass(CurveClass::CubicSpline, k, kFar), 1.0, kTail) << k;
   }
-  z = centre_of(CurveClass::CubicalParabola);
+  const Chart arc{CurveClass::CubicSpline, true};
+  const auto of_arc = [&](const TouchedVector& z) { return log_prior(arc, z); };
+  for (int k = 0; k < 4; ++k) {
+    const double width = prior_widths(arc, centre)[k];
+    EXPECT_NEAR(integral_along(of_arc, centre, width, k, -kFar, kFar), 1.0, kTail) << k;
+  }
   // Cubical parabola: half for either sign of a; a place and the one opposite are the same curve.
-  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 0, -40, 40), 0.5, 1e-6);
-  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 1, -kFar, kFar), 1.0, kTail);
-  EXPECT_NEAR(mass_along({CurveClass::CubicalParabola}, z, 2, -kFar, kFar), 2.0, 2.0 * kTail);
+  EXPECT_NEAR(mass(CurveClass::CubicalParabola, 0, 40.0), 0.5, 1e-6);
+  EXPECT_NEAR(mass(CurveClass::CubicalParabola, 1, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass(CurveClass::CubicalParabola, 2, kFar), 2.0, 2.0 * kTail);
+  // Of a hyperbola's tip m > 0, Cauchy's about 1.
+  TouchedVector tip = centre;
+  tip[1] = 1.0;
+  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, TouchedAt::Bend, tip, 0, -40.0, 40.0), 1.0, 1e-6);
+  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, TouchedAt::Bend, tip, 1, 0.0, kFar), 1.0, kTail);
+  EXPECT_NEAR(mass_along(CurveClass::Hyperbola, TouchedAt::Bend, tip, 2, -kFar, kFar), 1.0, kTail);
   // Ellipse: m over (0, 1); the size is half the diagonal; half a turn of directions is all of
   // them, whatever the ellipse. The perimeter is Ramanujan's.
   for (const double m : {0.01, 0.3, 0.99, 1.0}) {
     TouchedVector ellipse = TouchedVector::Zero();
     ellipse.head<2>() << log_size + std::log(m / std::sqrt(1.0 + m)), m;
     EXPECT_NEAR(log_prior({CurveClass::Ellipse}, ellipse), 0.0, 1e-14) << m;
-    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 0, -40.0, 40.0), 1.0, 1e-6) << m;
-    EXPECT_NEAR(mass_along({CurveClass::Ellipse}, ellipse, 2, 0.0, kPi), 1.0, 4e-4) << m;
+    EXPECT_NEAR(mass_along(CurveClass::Ellipse, TouchedAt::Bend, ellipse, 0, -40.0, 40.0), 1.0,
+                1e-6)
+        << m;
+    EXPECT_NEAR(mass_along(CurveClass::Ellipse, TouchedAt::Bend, ellipse, 2, 0.0, kPi), 1.0, 4e-4)
+        << m;
   }
   EXPECT_NEAR(prior_widths({CurveClass::Ellipse}, TouchedVector::Ones())[1] * std::sqrt(2.0 * kPi),
               1.0, 1e-14);
 }
 
-/// Both halves of the hyperbola's prior, of which the prior is the mean.
-TEST(TouchedCoordinates, BothHalvesOfTheHyperbolasPriorAreDensities) {
-  constexpr double kFar = 2000.0;
-  constexpr double kTail = 2.0 * 2.0 / (3.14 * kFar) + 1e-4;
-  const TouchedVector widths = prior_widths({CurveClass::Hyperbola}, TouchedVector::Zero());
-  const auto of_tip = [](const TouchedVector& z) {
-    return log_prior_of_half(HyperbolaHalf::Tip, z);
+/// Slope and place are independent for all sizes together, so that the integral along one is its
+/// own share of what the heights at 0 are.
+TEST(TouchedCoordinates, ArmsAreDensities) {
+  const TouchedVector centre = TouchedVector::Zero();
+  for (const CurveClass curve_class : {CurveClass::Parabola, CurveClass::CubicalParabola}) {
+    // Along each coordinate at the centre, over the height there: the product is the whole mass.
+    TouchedVector z = centre;
+    z[0] = expected_log_length(curve_class, TouchedAt::Arms, z);
+    const int own = shape_coordinates(curve_class);
+    double mass = std::exp(log_prior_touched_at(curve_class, TouchedAt::Arms, z) * (1.0 - own));
+    for (int k = 0; k < own; ++k) {
+      const double far = k == 0 ? 40.0 : kFar;
+      mass *= mass_along(curve_class, TouchedAt::Arms, centre, k, -far, far);
+    }
+    EXPECT_NEAR(mass, 1.0, 3.0 * kTail) << name_of(curve_class);
+  }
+}
+
+/// Half of the places are beyond those where parts end without arms, half of the slopes at the bend
+/// are above 1.
+TEST(TouchedCoordinates, HalfOfTheArmsAreLong) {
+  struct Law {
+    CurveClass curve_class;
+    int k;
+    double middle;
   };
+  for (const Law& law :
+       {Law{CurveClass::Parabola, 1, 3.0}, Law{CurveClass::CubicalParabola, 1, 1.0},
+        Law{CurveClass::CubicalParabola, 2, 1.0}}) {
+    const auto mass = [&](double far) {
+      return mass_along(law.curve_class, TouchedAt::Arms, TouchedVector::Zero(), law.k, -far, far);
+    };
+    EXPECT_NEAR(mass(law.middle) / mass(kFar), 0.5, kTail)
+        << name_of(law.curve_class) << ' ' << law.k;
+  }
+}
+
+/// A part's size reaches as far as it is touched: half the diagonal of the box of the curve from
+/// one end to the other. Shear of 0.75 of the cube makes up for most of it: then the box is as
+/// little as a fifth.
+TEST(TouchedCoordinates, APartReachesAsFarAsItIsTouched) {
+  std::mt19937_64 rng = test::test_rng();
+  for (int i = 0; i < 100; ++i) {
+    for (const CurveClass curve_class : {CurveClass::Parabola, CurveClass::CubicalParabola}) {
+      TouchedVector z = TouchedVector::Zero();
+      z[1] = test::uniform(rng, -3.0, 3.0);
+      z[place_coordinate(curve_class)] = test::uniform(rng, -8.0, 8.0);
+      z[0] = expected_log_length(curve_class, TouchedAt::Arms, z);
+      const auto shape = shape_at({curve_class}, z, {Eigen::Vector3d::Ones(), 0.0});
+      const auto curve = make_curve(curve_class, shape->values);
+      // The end is as far again as that of a part without arms.
+      const double without = curve_class == CurveClass::Parabola ? 3.0 : std::exp(z[0]);
+      const double end = std::hypot(without, shape->t);
+      Vec2 low = position(*curve, end);
+      Vec2 high = low;
+      for (double t = -end; t <= end; t += 0.01 * end) {
+        low = low.cwiseMin(position(*curve, t));
+        high = high.cwiseMax(position(*curve, t));
+      }
+      const double size = 0.5 * (high - low).norm();
+      EXPECT_LT(size, std::sqrt(2.0) * std::sqrt(20.0)) << name_of(curve_class);
+      EXPECT_GT(size, std::sqrt(20.0) / 5.0) << name_of(curve_class);
+    }
+  }
+}
+
+/// Of wedges the size is half the distance c of the foci, the place y / b, and b^2 / c^2 uniform.
+TEST(TouchedCoordinates, WedgesAreADensity) {
+  constexpr auto kHyperbola = CurveClass::Hyperbola;
+  const TouchedVector widths = prior_widths({kHyperbola}, TouchedVector::Zero());
   const auto of_wedge = [](const TouchedVector& z) {
-    return log_prior_of_half(HyperbolaHalf::Wedge, z);
+    return log_prior_touched_at(kHyperbola, TouchedAt::Arms, z);
   };
-  TouchedVector tip = TouchedVector::Zero();
-  tip[1] = 1.0;
-  tip[0] = expected_log_length(HyperbolaHalf::Tip, tip);
-  EXPECT_EQ(of_tip(tip), 0.0);
-  EXPECT_NEAR(integral_along(of_tip, tip, widths[0], 0, -40.0, 40.0), 1.0, 1e-6);
-  EXPECT_NEAR(integral_along(of_tip, tip, widths[1], 1, 0.0, kFar), 1.0, kTail);
-  EXPECT_NEAR(integral_along(of_tip, tip, widths[2], 2, -kFar, kFar), 1.0, kTail);
-  // Of wedges the size is half the distance c of the foci, the place y / b, and b^2 / c^2 uniform.
   for (const double square : {0.01, 0.1, 0.3, 0.5, 0.7, 0.9, 0.99}) {
     const double m = square / (1.0 - square);
     TouchedVector wedge = TouchedVector::Zero();
     wedge[1] = m;
     wedge[0] = 0.5 * std::log(20.0) + std::log(m / std::sqrt(1.0 + m));  // p of that size
-    EXPECT_NEAR(expected_log_length(HyperbolaHalf::Wedge, wedge), wedge[0], 1e-14) << m;
+    EXPECT_NEAR(expected_log_length(kHyperbola, TouchedAt::Arms, wedge), wedge[0], 1e-14) << m;
     const double at_size = of_wedge(wedge);
     const auto by_size = [&](const TouchedVector& z) { return of_wedge(z) - at_size; };
     EXPECT_NEAR(integral_along(by_size, wedge, widths[0], 0, -40.0, 40.0), 1.0, 1e-6) << m;
@@ -148,10 +217,19 @@ TEST(TouchedCoordinates, BothHalvesOfTheHyperbolasPriorAreDensities) {
     const double by_m = integral_along(of_wedge, wedge, widths[2], 2, -far, far) /
                         (widths[1] * std::sqrt(2.0 * kPi));
     EXPECT_NEAR(by_m * std::pow(1.0 - square, -2), 1.0, kTail) << m;
-    wedge[2] = 0.3;
-    EXPECT_NEAR(log_prior({CurveClass::Hyperbola}, wedge),
-                std::log(0.5 * (std::exp(of_tip(wedge)) + std::exp(of_wedge(wedge)))), 1e-13)
-        << m;
+  }
+}
+
+/// A tenth of the prior is of arms.
+TEST(TouchedCoordinates, ThePriorIsBendsAndArms) {
+  std::mt19937_64 rng = test::test_rng();
+  for (const CurveClass curve_class :
+       {CurveClass::Parabola, CurveClass::Hyperbola, CurveClass::CubicalParabola}) {
+    const TouchedVector z = coordinates_of({curve_class}, random_shape(curve_class, rng));
+    const double bend = std::exp(log_prior_touched_at(curve_class, TouchedAt::Bend, z));
+    const double arms = std::exp(log_prior_touched_at(curve_class, TouchedAt::Arms, z));
+    EXPECT_NEAR(log_prior({curve_class}, z), std::log(0.9 * bend + 0.1 * arms), 1e-12)
+        << name_of(curve_class);
   }
 }
 

@@ -1,0 +1,120 @@
+// Strokes far out on the arms of parabolas and cubics, where other classes leave as little.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <iostream>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/curves/curve.h"
+#include "core/recognition/recognizer.h"
+#include "tests/support/most_of_poisson.h"
+#include "tests/support/test_rng.h"
+
+namespace palpate {
+namespace {
+
+constexpr int kSamples = 80;
+
+/// From where to where a stroke runs, by the curve's parameter.
+using Stroke = std::array<double, 2>;
+
+Recognition touched(const Curve& curve, std::span<const Stroke> strokes, double sigma_m,
+                    std::mt19937_64& rng) {
+  std::normal_distribution<double> noise(0.0, sigma_m);
+  Recognizer recognizer;
+  std::uint32_t patch = 0;
+  for (const auto& [begin, end] : strokes) {
+    std::vector<ContactSample> samples;
+    for (int i = 0; i < kSamples; ++i) {
+      const double t = begin + (end - begin) * i / (kSamples - 1.0);
+      const double x = noise(rng);
+      samples.push_back({position(curve, t) + Vec2(x, noise(rng)), sigma_m, 0});
+    }
+    recognizer.add({0, patch++}, samples);
+  }
+  return recognizer.recognize();
+}
+
+struct FarArms {
+  std::string name;
+  std::function<Curve(std::mt19937_64&)> part;
+  std::vector<Stroke> strokes;
+  double sigma_m;
+};
+
+void PrintTo(const FarArms& of, std::ostream* out) { *out << of.name; }
+
+class FarArmsOf : public testing::TestWithParam<FarArms> {};
+
+// If all of the prior were parts that end where their slope is 3, these had e^-10 of it, and
+// another class, which leaves as little, all of the answer.
+TEST_P(FarArmsOf, AreTakenForNoOtherClass) {
+  std::mt19937_64 rng = test::test_rng();
+  const int scenes = test::stress_count(80);
+  int right = 0;
+  int wrong = 0;
+  int improbable = 0;
+  double stated_wrong = 0.0;
+  for (int i = 0; i < scenes; ++i) {
+    const Curve curve = GetParam().part(rng);
+    const Recognition answer = touched(curve, GetParam().strokes, GetParam().sigma_m, rng);
+    const double probability = answer.hypotheses.front().probability;
+    if (answer.status == RecognitionStatus::Recognized) {
+      (answer.shape.curve_class == class_of(curve) ? right : wrong) += 1;
+      stated_wrong += 1.0 - probability;
+    }
+    double of_truth = 0.0;
+    for (const Hypothesis& hypothesis : answer.hypotheses) {
+      of_truth += hypothesis.shape.curve_class == class_of(curve) ? hypothesis.probability : 0.0;
+    }
+    improbable += of_truth < 1e-4 ? 1 : 0;
+  }
+  std::cout << GetParam().name << ": of " << scenes << " RECOGNIZED " << right << ", as another "
+            << wrong << " (as told " << stated_wrong << "), improbable " << improbable << '\n';
+  EXPECT_LE(wrong, test::most_of_poisson(stated_wrong));
+  EXPECT_LE(improbable, test::most_of_poisson(1e-4 * scenes));
+}
+
+// Lengths in metres; a of the cubical parabola in 1 / m^2.
+INSTANTIATE_TEST_SUITE_P(
+    Parts, FarArmsOf,
+    testing::Values(FarArms{"flanks of slope 1 to 80",
+                            [](std::mt19937_64& rng) -> Curve {
+                              const double a =
+                                  test::random_sign(rng) * test::log_uniform(rng, 3e3, 3e4);
+                              return CubicalParabola{a, test::uniform(rng, -1.0, 1.0)};
+                            },
+                            {{0.010, 0.014}, {0.016, 0.020}, {0.024, 0.030}},
+                            2e-5},
+                    FarArms{"inflections of slope 5 to 15",
+                            [](std::mt19937_64& rng) -> Curve {
+                              return CubicalParabola{1e4, test::uniform(rng, 5.0, 15.0)};
+                            },
+                            {{-0.030, -0.015}, {-0.010, 0.010}, {0.024, 0.030}},
+                            2e-5},
+                    FarArms{"one leg of a parabola",
+                            [](std::mt19937_64& rng) -> Curve {
+                              return Parabola{test::uniform(rng, 1e-4, 3e-4)};
+                            },
+                            {{6.0, 8.0}, {9.0, 11.0}, {12.0, 15.0}},
+                            5e-6},
+                    FarArms{"both legs of a parabola",
+                            [](std::mt19937_64& rng) -> Curve {
+                              return Parabola{test::uniform(rng, 1e-4, 3e-4)};
+                            },
+                            {{-15.0, -11.0}, {-9.0, -6.0}, {6.0, 15.0}},
+                            2e-5}),
+    [](const testing::TestParamInfo<FarArms>& of) {
+      std::string name = of.param.name;
+      std::replace(name.begin(), name.end(), ' ', '_');
+      return name;
+    });
+
+}  // namespace
+}  // namespace palpate
