@@ -20,8 +20,7 @@ namespace {
 constexpr int kSamples = 111;
 
 /// Draws one coordinate by the inverse of its distribution function, the others at the centre: the
-/// prior's factors are independent, but for an ellipse's direction and size, and where half is
-/// arms.
+/// prior's factors are independent where there are no arms.
 class CoordinateLaw {
  public:
   CoordinateLaw(Chart chart, int k) {
@@ -78,6 +77,22 @@ TouchedVector drawn_touched_at(CurveClass curve_class, TouchedAt at, std::mt1993
         z[2] = student(6, 2.0) / std::sqrt(square);  // w = e y / p = c / b y / b
       }
       break;
+    case CurveClass::Ellipse: {
+      z[1] = uniform(rng, 0.0, 1.0);
+      const double ratio2 = z[1];
+      if (bend) {  // evenly by arc length
+        double angle = 0.0;
+        do {
+          angle = uniform(rng, 0.0, kPi);
+        } while (uniform(rng, 0.0, 1.0) >
+                 std::sqrt(1.0 - (1.0 - ratio2) * std::pow(std::cos(angle), 2)));
+        z[2] = std::atan2(std::sqrt(ratio2) * std::cos(angle), -std::sin(angle));
+      } else {
+        z[1] = 1.0 - std::sqrt(1.0 - ratio2);  // the density 2 (1 - m)
+        z[2] = std::atan2(1.0, student(2, 3.0 * std::numbers::sqrt3));
+      }
+      break;
+    }
     case CurveClass::Parabola:
       z[1] = bend ? student(6, 2.0) : student(2, 3.0 * std::numbers::sqrt3);
       break;
@@ -98,9 +113,7 @@ class ChartLaw {
       if (has_arms(chart.curve_class) && !chart.as_arc) {
         break;  // drawn below
       }
-      if (chart.curve_class != CurveClass::Ellipse || k == 0) {
-        coordinates_.emplace_back(chart, k);
-      }
+      coordinates_.emplace_back(chart, k);
     }
   }
 
@@ -108,18 +121,6 @@ class ChartLaw {
     TouchedVector z = prior_centre(chart_);
     for (std::size_t k = 0; k < coordinates_.size(); ++k) {
       z[static_cast<Eigen::Index>(k)] = coordinates_[k](rng);
-    }
-    if (chart_.curve_class == CurveClass::Ellipse) {
-      // z[0] is that of a circle, of which the box is as large; places evenly by arc length.
-      const double m = uniform(rng, 0.0, 1.0);
-      z[0] += std::log(m * std::sqrt(2.0 / (1.0 + m)));
-      z[1] = m;
-      double angle = 0.0;
-      const auto speed = [&] { return std::sqrt(1.0 - (1.0 - m) * std::pow(std::cos(angle), 2)); };
-      do {
-        angle = uniform(rng, 0.0, kPi);
-      } while (uniform(rng, 0.0, 1.0) > speed());
-      z[2] = std::atan2(std::sqrt(m) * std::cos(angle), -std::sin(angle));
     }
     if (has_arms(chart_.curve_class) && !chart_.as_arc) {
       const bool on_arms = uniform(rng, 0.0, 1.0) < kShareOfArms;

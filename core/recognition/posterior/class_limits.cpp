@@ -15,7 +15,7 @@ namespace {
 
 /// Where in the tail of a normal law beyond `from` the cube has its mean: that of an exponential
 /// law, 6^(1/3), times how far the tail reaches in the mean. Ellipses next to the parabola are as
-/// probable as the cube of m.
+/// probable as the cube of m, and where they are touched on arms (arms.h), alike whatever m is.
 double tail_of_cube(double from) {
   constexpr double kOfCube = 1.817;
   const double tail = 0.5 * std::erfc(from / std::numbers::sqrt2);

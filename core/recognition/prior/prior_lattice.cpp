@@ -121,6 +121,12 @@ Place place_on_arms(CurveClass curve_class, const std::array<double, 3>& u) {
     case CurveClass::Parabola:
       set(1, one_side(u[0], scale(1)));
       break;
+    case CurveClass::Ellipse: {
+      set(1, slow_at_ends(u[0]));
+      const Mapped slope = one_side(u[1], scale(2));
+      set(2, {std::atan2(1.0, slope.value), slope.rate / (1.0 + slope.value * slope.value)});
+      break;
+    }
     case CurveClass::Hyperbola: {
       const Mapped root = one_side(u[0], 1.0);  // of m: the tangent of half the angle
       const double w_over_place = std::hypot(1.0, root.value) / root.value;

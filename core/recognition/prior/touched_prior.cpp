@@ -8,6 +8,7 @@
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/arms.h"
 #include "core/recognition/prior/bend_laws.h"
+#include "core/recognition/prior/ellipse_places.h"
 #include "core/recognition/prior/size_law.h"
 
 namespace palpate {
@@ -40,21 +41,6 @@ double share_of_arms(CurveClass curve_class, const TouchedVector& z) {
   const double more = log_prior_touched_at(curve_class, TouchedAt::Bend, z) -
                       log_prior_touched_at(curve_class, TouchedAt::Arms, z);
   return kShareOfArms / (kShareOfArms + (1.0 - kShareOfArms) * std::exp(more));
-}
-
-/// A quarter of an ellipse's perimeter over a, right to 4e-4 (S. Ramanujan, 1914).
-double quarter_perimeter_over_a(double m) {
-  const double ratio = std::sqrt(m);
-  const double flattening = (1.0 - ratio) / (1.0 + ratio);
-  const double square = 3.0 * flattening * flattening;
-  return 0.25 * kPi * (1.0 + ratio) * (1.0 + square / (10.0 + std::sqrt(4.0 - square)));
-}
-
-/// What curvature on an ellipse is the power 3 / 2 of, 1 at its tips: by the tangent's direction
-/// from the major axis.
-double tip_likeness(double m, double direction) {
-  const double sine = std::sin(direction);
-  return sine * sine + m * (1.0 - sine * sine);
 }
 
 }  // namespace
@@ -130,9 +116,8 @@ TouchedVector prior_widths(Chart chart, const TouchedVector& z) {
       break;
     case CurveClass::Ellipse:
       // m uniform in (-1, 0). Places are touched by their share of the perimeter, most densely, by
-      // direction, on the flat sides. A pose turned by half a turn is the same: half of it is all.
-      widths.head<3>() << kSizeWidth, kUniformWidth,
-          2.0 * quarter_perimeter_over_a(z[1]) * std::sqrt(z[1]) * kUniformWidth;
+      // direction, on the flat sides.
+      widths.head<3>() << kSizeWidth, kUniformWidth, width_of_direction(z[1]);
       break;
     case CurveClass::Hyperbola:
       // About the tip. Three quarters of the law of m are positive. The place is w = e y / p, as
@@ -261,13 +246,16 @@ TouchedVector tail_weights(Chart chart, const TouchedVector& z) {
   const TouchedVector slope = log_prior_gradient(chart, z);
   const TouchedVector widths = prior_widths(chart, z);
   TouchedVector away = z - prior_centre(chart);
-  if (curve_class == CurveClass::Ellipse) {
-    away.head<3>() << log_size(curve_class, z), 0.0, std::remainder(z[2], kPi);  // m has no tail
-  } else if (share_of_arms(curve_class, z) > 0.5) {
+  const bool on_arms = share_of_arms(curve_class, z) > 0.5;
+  if (on_arms) {
     away[0] = log_size_of_arms(curve_class, z);
-    if (curve_class == CurveClass::Hyperbola) {
-      away[1] = 0.0;  // b / c has no tail
-    }
+  }
+  if (curve_class == CurveClass::Ellipse) {
+    away[0] = on_arms ? away[0] : log_size(curve_class, z);
+    away[1] = 0.0;  // m has no tail
+    away[2] = std::remainder(on_arms ? z[2] - 0.5 * kPi : z[2], kPi);
+  } else if (curve_class == CurveClass::Hyperbola && on_arms) {
+    away[1] = 0.0;  // nor has b / c
   }
   for (int k = 0; k < shape_coordinates(curve_class); ++k) {
     const double curvature = away[k] != 0.0 ? -slope[k] / away[k] : 0.0;

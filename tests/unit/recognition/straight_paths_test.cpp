@@ -35,9 +35,16 @@ TouchedVector drawn_on_arms(CurveClass curve_class, std::mt19937_64& rng) {
       z[0] = log_of_length(std::sqrt(1.0 + z[1]) / z[1]);
       break;
     }
+    case CurveClass::Ellipse:
     case CurveClass::Parabola: {
-      z[1] = student(2, 3.0 * std::numbers::sqrt3, rng);
-      const double end = std::hypot(3.0, z[1]);
+      const double slope = student(2, 3.0 * std::numbers::sqrt3, rng);
+      if (curve_class == CurveClass::Parabola) {
+        z[1] = slope;
+      } else {
+        z[1] = 1.0 - std::sqrt(std::uniform_real_distribution<double>(0.0, 1.0)(rng));
+        z[2] = std::atan2(1.0, slope);
+      }
+      const double end = std::hypot(3.0, slope);
       z[0] = log_of_length(0.5 * std::hypot(0.5 * end * end, 2.0 * end));
       break;
     }
@@ -55,7 +62,7 @@ TouchedVector drawn_on_arms(CurveClass curve_class, std::mt19937_64& rng) {
 /// A shape drawn from the prior, its size the expected one.
 TouchedVector drawn(CurveClass curve_class, std::mt19937_64& rng) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  const bool has_arms = curve_class == CurveClass::Parabola ||
+  const bool has_arms = curve_class == CurveClass::Ellipse || curve_class == CurveClass::Parabola ||
                         curve_class == CurveClass::Hyperbola ||
                         curve_class == CurveClass::CubicalParabola;
   if (has_arms && uniform(rng) < 0.1) {

@@ -120,7 +120,8 @@ TEST(TouchedCoordinates, EveryFactorOfThePriorIsADensity) {
   for (const double m : {0.01, 0.3, 0.99, 1.0}) {
     TouchedVector ellipse = TouchedVector::Zero();
     ellipse.head<2>() << log_size + std::log(m / std::sqrt(1.0 + m)), m;
-    EXPECT_NEAR(log_prior({CurveClass::Ellipse}, ellipse), 0.0, 1e-14) << m;
+    EXPECT_NEAR(log_prior_touched_at(CurveClass::Ellipse, TouchedAt::Bend, ellipse), 0.0, 1e-14)
+        << m;
     EXPECT_NEAR(mass_along(CurveClass::Ellipse, TouchedAt::Bend, ellipse, 0, -40.0, 40.0), 1.0,
                 1e-6)
         << m;
@@ -146,6 +147,27 @@ TEST(TouchedCoordinates, ArmsAreDensities) {
       mass *= mass_along(curve_class, TouchedAt::Arms, centre, k, -far, far);
     }
     EXPECT_NEAR(mass, 1.0, 3.0 * kTail) << name_of(curve_class);
+  }
+}
+
+/// Of an ellipse's tip; m as the square of the eccentricity, 1 - m.
+TEST(TouchedCoordinates, TipsOfEllipsesAreADensity) {
+  for (const double m : {0.01, 0.3, 0.99}) {
+    TouchedVector tip = TouchedVector::Zero();
+    tip.segment<2>(1) << m, 0.5 * kPi;
+    const auto mass = [&](double low, double high) {
+      return mass_along(CurveClass::Ellipse, TouchedAt::Arms, tip, 2, low, high) /
+             (2.0 * (1.0 - m));
+    };
+    EXPECT_NEAR(mass(0.0, kPi), 1.0, 1e-4) << m;
+    // As of a parabola half are touched where the slope against the tip is above 3.
+    EXPECT_NEAR(mass(std::atan2(1.0, 3.0), std::atan2(1.0, -3.0)), 0.5, 1e-4) << m;
+    // The size is that of a parabola of this p.
+    TouchedVector parabola = TouchedVector::Zero();
+    parabola[1] = 2.0;
+    tip[2] = std::atan2(1.0, 2.0);
+    EXPECT_NEAR(expected_log_length(CurveClass::Ellipse, TouchedAt::Arms, tip),
+                expected_log_length(CurveClass::Parabola, TouchedAt::Arms, parabola), 1e-12);
   }
 }
 
@@ -223,8 +245,8 @@ TEST(TouchedCoordinates, WedgesAreADensity) {
 /// A tenth of the prior is of arms.
 TEST(TouchedCoordinates, ThePriorIsBendsAndArms) {
   std::mt19937_64 rng = test::test_rng();
-  for (const CurveClass curve_class :
-       {CurveClass::Parabola, CurveClass::Hyperbola, CurveClass::CubicalParabola}) {
+  for (const CurveClass curve_class : {CurveClass::Ellipse, CurveClass::Parabola,
+                                       CurveClass::Hyperbola, CurveClass::CubicalParabola}) {
     const TouchedVector z = coordinates_of({curve_class}, random_shape(curve_class, rng));
     const double bend = std::exp(log_prior_touched_at(curve_class, TouchedAt::Bend, z));
     const double arms = std::exp(log_prior_touched_at(curve_class, TouchedAt::Arms, z));
@@ -240,7 +262,8 @@ TEST(TouchedCoordinates, AnEllipseIsTouchedEvenlyByArcLength) {
     const Ellipse ellipse{1.0, std::sqrt(m)};
     const auto log_density_at = [&](double t) {
       const TouchedVector z = coordinates_of(chart, {{ellipse.a, ellipse.b, 0.0}, t});
-      return log_prior(chart, z) - std::log(prior_widths(chart, z)[2]);
+      return log_prior_touched_at(CurveClass::Ellipse, TouchedAt::Bend, z) -
+             std::log(prior_widths(chart, z)[2]);
     };
     for (double t = 0.1; t < 1.5; t += 0.2) {
       // By direction arc length runs as the radius of curvature.
