@@ -15,7 +15,8 @@ namespace {
 
 /// Where in the tail of a normal law beyond `from` the cube has its mean: that of an exponential
 /// law, 6^(1/3), times how far the tail reaches in the mean. Ellipses next to the parabola are as
-/// probable as the cube of m, and where they are touched on arms (arms.h), alike whatever m is.
+/// probable as the cube of m, but for the share that is touched about a tip (arms.h), whose density
+/// hardly changes there.
 double tail_of_cube(double from) {
   constexpr double kOfCube = 1.817;
   const double tail = 0.5 * std::erfc(from / std::numbers::sqrt2);

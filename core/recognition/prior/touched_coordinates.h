@@ -37,8 +37,9 @@ TouchedShape normalised_shape(CurveClass curve_class, const TouchedShape& shape,
 /// Number of coordinates of shape and place: line 0, circle 1, parabola 2, spline 4, others 3.
 int shape_coordinates(CurveClass curve_class);
 
-/// Regular coordinates. The prior is a product of independent factors in them, but an ellipse's
-/// size and directions, which depend on m (core/README.md, "The prior"):
+/// Regular coordinates. The prior of parts touched about their bend is a product of independent
+/// factors in them, but an ellipse's size and directions, which depend on m (core/README.md, "The
+/// prior"):
 ///   circle: log radius
 ///   ellipse, hyperbola: log p and |m| of y^2 = 2 p x + m x^2, tangent's direction at the place
 ///   parabola: log p, tangent's direction
