@@ -7,6 +7,7 @@
 #include "core/recognition/fit/on_all_points.h"
 #include "core/recognition/fit/orthogonal/feet_in_order.h"
 #include "core/recognition/fit/orthogonal/touchable.h"
+#include "core/recognition/fit/parabola_beside_conic.h"
 #include "core/recognition/fit/polynomial_search.h"
 #include "core/recognition/fit/starts/algebraic_fit.h"
 #include "core/recognition/fit/starts/few_points.h"
@@ -101,6 +102,9 @@ std::optional<ClassFits> fits_from(const PolynomialFits* starts, const FitData& 
     also_from(polynomials.parabola->chi2, conic_of_parabola(*polynomials.parabola));
   }
   also_from(circle.chi2, circle.coefficients);
+  if (usable && starts == nullptr) {
+    start_parabola_beside_conic(conic.coefficients, conic.chi2, reduced, &polynomials, work);
+  }
 
   // A parabola is the cubics' limit, and data that leave a conic possible tell no cubic from it.
   // Where none of these fits, one cubic that does says nothing of another: the best seed by the

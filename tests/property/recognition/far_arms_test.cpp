@@ -137,7 +137,13 @@ INSTANTIATE_TEST_SUITE_P(
                               return Parabola{test::uniform(rng, 1e-4, 3e-4)};
                             },
                             {{-15.0, -11.0}, {-9.0, -6.0}, {6.0, 15.0}},
-                            2e-5}),
+                            2e-5},
+                    FarArms{"a leg and the tip of a needle",
+                            [](std::mt19937_64& rng) -> Curve {
+                              return Parabola{test::uniform(rng, 1e-6, 4e-6)};
+                            },
+                            {{-15.0, 22.0}, {60.0, 90.0}, {110.0, 150.0}},
+                            1e-6}),
     [](const testing::TestParamInfo<FarArms>& of) {
       std::string name = of.param.name;
       std::replace(name.begin(), name.end(), ' ', '_');
