@@ -14,16 +14,13 @@ namespace {
 /// 46, that of half a step of directions; there x is p t^2 / 2, and a conic is nearer to the
 /// parabola than that is wide if abs(m) is below 4 / t^2.
 constexpr double kNearParabola = 2e-3;
-/// One coefficient more takes off a chi-square of one degree of freedom: in a third of all cases
-/// above 1.
-constexpr double kByChance = 1.0;
 
 }  // namespace
 
 void start_parabola_beside_conic(const ConicCoefficients& conic, double conic_chi2,
                                  const FitData& reduced, PolynomialFits* fits, WorkBudget& work) {
   std::optional<PolynomialFit>& parabola = fits->parabola;
-  if (!parabola || parabola->chi2 <= conic_chi2 + kByChance ||
+  if (!parabola || parabola->chi2 <= conic_chi2 + kMoreByChance ||
       !fits_well(conic_chi2, residual_count(reduced)) || !work.allows()) {
     return;
   }

@@ -105,16 +105,14 @@ void start_cubical_from_spline(const FitData& reduced, double out_of_reach, Poly
                                WorkBudget& work) {
   std::optional<PolynomialFit>& limit = fits->cubical_parabola;
   const std::optional<PolynomialFit>& spline = fits->cubic_spline;
-  // One coefficient more takes off a chi-square of one degree of freedom: in a third of all cases
-  // above 1. A steep flank is fitted as well by an arm of another axis, and not as closely.
-  constexpr double kByChance = 1.0;
+  // A steep flank is fitted as well by an arm of another axis, and not as closely.
   if (!limit || !spline || !fits_well(spline->chi2, residual_count(reduced)) ||
-      limit->chi2 <= spline->chi2 + kByChance || !work.allows()) {
+      limit->chi2 <= spline->chi2 + kMoreByChance || !work.allows()) {
     return;
   }
   start_from(cubical_at(*spline, reduced.points), PolynomialModel::CubicalParabola, reduced,
              out_of_reach, &limit, work);
-  if (limit->chi2 <= spline->chi2 + kByChance || !work.allows()) {
+  if (limit->chi2 <= spline->chi2 + kMoreByChance || !work.allows()) {
     return;
   }
   const Vec2 across = spline->coefficients.col(3);
