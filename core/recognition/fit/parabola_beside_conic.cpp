@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/recognition/fit/class_fits.h"
 #include "core/recognition/fit/starts/axis_fit.h"
@@ -14,13 +15,16 @@ namespace {
 /// 46, that of half a step of directions; there x is p t^2 / 2, and a conic is nearer to the
 /// parabola than that is wide if abs(m) is below 4 / t^2.
 constexpr double kNearParabola = 2e-3;
+/// Three deviations of the conic's one coefficient more. By less than that a needle that runs to
+/// and fro over a stroke is better than a parabola along it, and far less probable.
+constexpr double kMissedBy = 9.0;
 
 }  // namespace
 
 void start_parabola_beside_conic(const ConicCoefficients& conic, double conic_chi2,
                                  const FitData& reduced, PolynomialFits* fits, WorkBudget& work) {
   std::optional<PolynomialFit>& parabola = fits->parabola;
-  if (!parabola || parabola->chi2 <= conic_chi2 + kMoreByChance ||
+  if (!parabola || parabola->chi2 <= conic_chi2 + kMissedBy ||
       !fits_well(conic_chi2, residual_count(reduced)) || !work.allows()) {
     return;
   }

@@ -15,11 +15,6 @@ namespace palpate {
 /// that the prior may leave.
 inline constexpr double kHopelessRival = 2.0 * kNegligibleLogOdds;
 
-/// One coefficient more takes off a chi-square of one degree of freedom: in a third of all cases
-/// above 1. A class that leaves more than this beside one that it is a limit of may have been
-/// missed.
-inline constexpr double kMoreByChance = 1.0;
-
 struct PolynomialFits {
   std::optional<PolynomialFit> parabola;
   std::optional<PolynomialFit> cubical_parabola;

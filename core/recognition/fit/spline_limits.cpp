@@ -14,6 +14,10 @@
 namespace palpate {
 namespace {
 
+/// One coefficient more takes off a chi-square of one degree of freedom: in a third of all cases
+/// above 1. A limit that leaves more than this beside the spline may have been missed.
+constexpr double kMoreByChance = 1.0;
+
 void start_from(const PolynomialFit& start, PolynomialModel model, const FitData& reduced,
                 double out_of_reach, std::optional<PolynomialFit>* best, WorkBudget& work) {
   keep_better(best, refine_polynomial(model, reduced.points, start, kSurfacePoints,
