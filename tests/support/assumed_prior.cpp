@@ -110,7 +110,7 @@ class ChartLaw {
  public:
   explicit ChartLaw(Chart chart) : chart_(chart) {
     for (int k = 0; k < shape_coordinates(chart.curve_class); ++k) {
-      if (has_arms(chart.curve_class) && !chart.as_arc) {
+      if (has_arms(chart.curve_class)) {
         break;  // drawn below
       }
       coordinates_.emplace_back(chart, k);
@@ -122,7 +122,7 @@ class ChartLaw {
     for (std::size_t k = 0; k < coordinates_.size(); ++k) {
       z[static_cast<Eigen::Index>(k)] = coordinates_[k](rng);
     }
-    if (has_arms(chart_.curve_class) && !chart_.as_arc) {
+    if (has_arms(chart_.curve_class)) {
       const bool on_arms = uniform(rng, 0.0, 1.0) < kShareOfArms;
       z = drawn_touched_at(chart_.curve_class, on_arms ? TouchedAt::Arms : TouchedAt::Bend, rng);
     }

@@ -31,6 +31,18 @@ bool is_missed(const std::optional<PolynomialFit>& limit, const PolynomialFit& s
   return fits_well(spline.chi2, residuals) && !fits_well(limit->chi2, residuals);
 }
 
+/// A spline counted from `origin`, without one power of its parameter.
+PolynomialFit without_power(Eigen::Index power, double origin, const PolynomialFit& spline,
+                            std::span<const FitPoint> points) {
+  PolynomialFit fit = spline;
+  fit.coefficients = PolynomialCurve2{spline.coefficients}.shifted(origin).coefficients;
+  fit.coefficients.col(power).setZero();
+  for (double& t : fit.t) {
+    t -= origin;
+  }
+  return placed_on(points, std::move(fit));
+}
+
 /// The semi-cubical parabola that a spline nearly is: its cusp where the spline is slowest.
 PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPoint> points) {
   const PolynomialCoefficients& c = spline.coefficients;
@@ -46,13 +58,7 @@ PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPo
       slowest = t;
     }
   });
-  PolynomialFit fit = spline;
-  fit.coefficients = PolynomialCurve2{c}.shifted(slowest).coefficients;
-  fit.coefficients.col(1).setZero();
-  for (double& t : fit.t) {
-    t -= slowest;
-  }
-  return placed_on(points, std::move(fit));
+  return without_power(1, slowest, spline, points);
 }
 
 /// The cubical parabola that a spline nearly is, whose vertex is far away: without the second
@@ -60,13 +66,7 @@ PolynomialFit semi_cubical_at(const PolynomialFit& spline, std::span<const FitPo
 PolynomialFit cubical_at(const PolynomialFit& spline, std::span<const FitPoint> points) {
   const PolynomialCoefficients& c = spline.coefficients;
   const double inflection = -c.col(2).dot(c.col(3)) / (3.0 * c.col(3).squaredNorm());
-  PolynomialFit fit = spline;
-  fit.coefficients = PolynomialCurve2{c}.shifted(inflection).coefficients;
-  fit.coefficients.col(2).setZero();
-  for (double& t : fit.t) {
-    t -= inflection;
-  }
-  return placed_on(points, std::move(fit));
+  return without_power(2, inflection, spline, points);
 }
 
 }  // namespace

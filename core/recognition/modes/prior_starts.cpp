@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "core/recognition/modes/touched_arc.h"
 #include "core/recognition/prior/arc_coordinates.h"
 #include "core/recognition/prior/prior_lattice.h"
+#include "core/recognition/prior/size_law.h"
 
 namespace palpate {
 namespace {
@@ -191,13 +191,11 @@ std::vector<PriorStart> prior_starts(const Touch& touch, CurveClass path_class,
     if (!std::isfinite(log_length)) {
       continue;
     }
-    const double away = std::abs(log_length);  // -2 log cosh, as the prior of sizes has it
-    const double of_size = -2.0 * (away + std::log1p(std::exp(-2.0 * away)) - std::numbers::ln2);
     const Sided plain{of_prior.z, of_prior.curvature, of_prior.relative_rate, 1.0, 1.0};
     for (const Sided& side : {plain, mirrored(curve_class, plain)}) {
       const Sided shape = bent_like(curvature, side);
       const double off = (shape.rate - rate) / kApart;
-      const double score = of_prior.log_weight + of_size - 0.5 * off * off;
+      const double score = of_prior.log_weight + log_of_size(log_length) - 0.5 * off * off;
       Scored& in_sector = best[sector_of(curve_class, shape)];
       if (score > in_sector.score) {
         in_sector = {score, shape};

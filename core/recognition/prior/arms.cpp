@@ -64,8 +64,8 @@ Extent extent_of(CurveClass curve_class, const TouchedVector& z) {
       break;
     }
     case CurveClass::Hyperbola:  // c, half the distance of the foci, wherever it is touched
-      extent.log = 0.5 * std::log1p(z[1]) - std::log(z[1]);
-      extent.gradient[1] = 0.5 / (1.0 + z[1]) - 1.0 / z[1];
+      extent.log = log_diagonal_over_p(z[1]);
+      extent.gradient[1] = log_diagonal_derivative(z[1]);
       break;
     default: {                               // cubical parabola
       const double q = 1.0 + place * place;  // the box, of half: sqrt(q) by q^(3/2), sheared

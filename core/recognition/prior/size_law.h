@@ -19,4 +19,9 @@ inline double log_of_size(double x) {
 }
 inline double log_of_size_derivative(double x) { return -2.0 * std::tanh(x); }
 
+/// log of half the diagonal of an ellipse's box, or of half the distance of a hyperbola's foci,
+/// over p, m = b^2 / a^2, and its derivative.
+inline double log_diagonal_over_p(double m) { return 0.5 * std::log1p(m) - std::log(m); }
+inline double log_diagonal_derivative(double m) { return 0.5 / (1.0 + m) - 1.0 / m; }
+
 }  // namespace palpate

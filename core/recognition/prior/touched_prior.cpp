@@ -21,10 +21,6 @@ const double kUniformWidth = 1.0 / std::sqrt(2.0 * kPi);
 /// Of the normal law as high: the density of log(size) is 1 / 2 at the centre.
 const double kSizeWidth = 2.0 * kUniformWidth;
 
-/// log of half the diagonal of an ellipse's box over p, m = b^2 / a^2, and its derivative.
-double log_diagonal_over_p(double m) { return 0.5 * std::log1p(m) - std::log(m); }
-double log_diagonal_derivative(double m) { return 0.5 / (1.0 + m) - 1.0 / m; }
-
 /// log of the size of the part over its middle, sqrt(20) half extents.
 double log_size(CurveClass curve_class, const TouchedVector& z) {
   const double log_over_length = curve_class == CurveClass::Ellipse
